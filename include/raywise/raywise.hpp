@@ -1,0 +1,4 @@
+// Everything public, in one include.
+#pragma once
+
+#include <raywise/core/error.hpp>
