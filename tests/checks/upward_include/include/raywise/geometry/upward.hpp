@@ -1,0 +1,2 @@
+// An include that the layer check must refuse.
+#include <raywise/build/binned.hpp>
