@@ -66,6 +66,14 @@ struct Aabb {
            outer.hi.z >= inner.hi.z;
 }
 
+/// Whether the point is in the closed box; exact. False for NaN and for an empty box.
+[[nodiscard]] constexpr bool contains(const Aabb& box, Vec3d point) {
+    const Vec3d lo = to_double(box.lo);
+    const Vec3d hi = to_double(box.hi);
+    return lo.x <= point.x && point.x <= hi.x && lo.y <= point.y && point.y <= hi.y &&
+           lo.z <= point.z && point.z <= hi.z;
+}
+
 /// Half the surface area; 0 for an empty box and for a point, positive for a flat box.
 [[nodiscard]] constexpr float half_area(const Aabb& box) {
     if (box.is_empty()) return 0;

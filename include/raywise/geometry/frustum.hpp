@@ -1,7 +1,9 @@
 // View frusta: pyramids cut between two depths.
 #pragma once
 
+#include <raywise/geometry/aabb.hpp>
 #include <raywise/geometry/frame.hpp>
+#include <raywise/geometry/ray.hpp>
 #include <raywise/geometry/vec.hpp>
 
 namespace raywise {
@@ -26,5 +28,18 @@ struct Frustum {
                {((i & 4) != 0 ? z : -z) * frustum.tan_x, ((i & 2) != 0 ? z : -z) * frustum.tan_y, z}
            );
 }
+
+/// Whether the point is in the closed set; in case of doubt (rounding) it is. False for NaN.
+[[nodiscard]] bool contains(const Frustum& frustum, Vec3d point);
+
+/// Whether the eight vertices of the box are in the closed set, and so the whole box. False for an
+/// empty box.
+[[nodiscard]] bool contains(const Frustum& frustum, const Aabb& box);
+
+/// Parameter at which a ray that starts inside leaves, rounded down; >= 0, +inf if never.
+[[nodiscard]] float exit_parameter(const Frustum& frustum, const Ray& ray);
+
+/// An enclosing float box, at most two units in the last place larger than the smallest.
+[[nodiscard]] Aabb bounds(const Frustum& frustum);
 
 } // namespace raywise

@@ -3,6 +3,7 @@
 
 #include <raywise/geometry/aabb.hpp>
 #include <raywise/geometry/frame.hpp>
+#include <raywise/geometry/ray.hpp>
 #include <raywise/geometry/vec.hpp>
 
 namespace raywise {
@@ -23,5 +24,18 @@ struct Obb {
                              (i & 1) != 0 ? box.half.z : -box.half.z}
                         );
 }
+
+/// Whether the point is in the closed set; in case of doubt (rounding) it is. False for NaN.
+[[nodiscard]] bool contains(const Obb& obb, Vec3d point);
+
+/// Whether the eight vertices of the box are in the closed set, and so the whole box. False for an
+/// empty box.
+[[nodiscard]] bool contains(const Obb& obb, const Aabb& box);
+
+/// Parameter at which a ray that starts inside leaves, rounded down; >= 0, +inf if never.
+[[nodiscard]] float exit_parameter(const Obb& obb, const Ray& ray);
+
+/// An enclosing float box, at most two units in the last place larger than the smallest.
+[[nodiscard]] Aabb bounds(const Obb& obb);
 
 } // namespace raywise

@@ -14,8 +14,9 @@ namespace raywise {
 /// A convex closed set.
 using Region = std::variant<Aabb, Obb, Frustum>;
 
-/// Whether the point is in the closed set. Rounding: the documented side is inside; a point that is
-/// in the exact set up to a few units in the last place of the operands may be judged either way.
+/// Whether the point is in the closed set. Rounding: in case of doubt it is, so every point of the
+/// set is accepted, and points outside it by a few units in the last place of the (double) operands
+/// may be.
 [[nodiscard]] bool contains(const Region& region, Vec3d point);
 
 /// Whether the whole box is in the region: its eight vertices are. False for an empty box.
@@ -33,7 +34,8 @@ using Region = std::variant<Aabb, Obb, Frustum>;
 /// never leaves. For an origin outside the result is meaningless: ask `contains` first.
 [[nodiscard]] float exit_parameter(const Region& region, const Ray& ray);
 
-/// The smallest float box that encloses the region (rounded outward).
+/// A float box that encloses the region (rounded outward), at most two units in the last place
+/// larger than the smallest. Every float point that `contains` accepts is in it.
 [[nodiscard]] Aabb bounds(const Region& region);
 
 /// Length of the longest diagonal.
