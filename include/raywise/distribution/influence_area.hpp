@@ -105,7 +105,7 @@ struct InfluenceArea {
 /// The world-axis box around `bounds` (not empty, finite; throws Error otherwise).
 [[nodiscard]] Obb obb_around(const Aabb& bounds);
 
-/// The smallest box around `bounds` whose forward axis is `direction` (frame_along).
+/// The box around `bounds` in frame_along(direction): its forward axis follows the rays.
 [[nodiscard]] Obb obb_around(const Aabb& bounds, Vec3d direction);
 
 } // namespace raywise

@@ -42,6 +42,9 @@ public:
     /// The same measure inside `box`, counting only the rays that meet it. O(rays) time and memory.
     [[nodiscard]] MeasuredMeasure narrowed(const Aabb& box) const;
 
+    /// Share of the recorded weight that meets both boxes; uniform lines do not count.
+    [[nodiscard]] double shared(const Aabb& a, const Aabb& b) const;
+
     /// Number of rays that an evaluation tests.
     [[nodiscard]] std::size_t ray_count() const { return selected_->size(); }
 

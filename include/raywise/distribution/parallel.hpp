@@ -75,9 +75,11 @@ public:
     /// exceed 1. The thesis's unculled measure.
     [[nodiscard]] double unculled(const Aabb& box) const;
 
-    /// The exact projections behind the measure: one, or one per direction of the cone's
-    /// quadrature.
-    [[nodiscard]] const std::vector<WindowProjection>& projections() const { return *projections_; }
+    /// Probability that a ray meets both boxes: the common part of their shadows.
+    [[nodiscard]] double shared(const Aabb& a, const Aabb& b) const;
+
+    /// The same for whole shadows, as `unculled`.
+    [[nodiscard]] double unculled_shared(const Aabb& a, const Aabb& b) const;
 
 private:
     /// Whether every shadow of the box lies in the window, all of the box in front. Conservative
@@ -88,19 +90,19 @@ private:
         const Vec3d center = (lo + hi) * 0.5;
         const Vec3d half = (hi - lo) * 0.5;
         const Vec3d at = axis_(center);
-        const double near = at.z - dot(abs_z_, half);
-        const double spread = spread_ * (at.z + dot(abs_z_, half));
-        return near >= 0 && std::abs(at.x) + dot(abs_x_, half) + spread * spread_x_ <= 1 &&
-               std::abs(at.y) + dot(abs_y_, half) + spread * spread_y_ <= 1;
+        const double depth = dot(abs_z_, half);
+        const double far = at.z + depth;
+        return at.z - depth >= 0 && std::abs(at.x) + dot(abs_x_, half) + spread_x_ * far <= 1 &&
+               std::abs(at.y) + dot(abs_y_, half) + spread_y_ * far <= 1;
     }
 
     [[nodiscard]] float clipped(const Aabb& box) const;
 
     WindowProjection axis_;
     Vec3d abs_x_, abs_y_, abs_z_;
-    double spread_ = 0; // largest tangent of the quadrature's directions to forward
-    double spread_x_ = 1, spread_y_ = 1; // window units per scene unit
-    Vec3 weights_;                       // of the three face areas, mean over the quadrature
+    double spread_x_ = 0; // how far the cone carries a shadow per unit of depth, window units
+    double spread_y_ = 0;
+    Vec3 weights_; // of the three face areas, mean over the quadrature
     bool inside_ = false;
     std::shared_ptr<const std::vector<WindowProjection>> projections_;
 };

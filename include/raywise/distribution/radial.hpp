@@ -7,11 +7,16 @@
 #include <raywise/distribution/ray_distribution.hpp>
 #include <raywise/geometry/aabb.hpp>
 #include <raywise/geometry/frame.hpp>
+#include <raywise/geometry/projected_area.hpp>
 #include <raywise/geometry/ray.hpp>
+#include <raywise/geometry/solid_angle.hpp>
 #include <raywise/geometry/vec.hpp>
 
 #include <cstdint>
+#include <memory>
 #include <optional>
+#include <variant>
+#include <vector>
 
 namespace raywise {
 
@@ -48,33 +53,56 @@ struct RadialParams {
 /// the eye, clipped to the window and to the depth at which rays start. Rays that start inside the
 /// box meet it: 1 for a box that holds the eye, when they start at the eye.
 ///
-/// Pinhole and isotropic are exact up to rounding; yaw_pitch integrates each edge of the silhouette
-/// numerically, with an error below 1e-5 for fields of view up to 150 degrees. With a radius it is
-/// the mean over 13 positions of the eye (a formula of degree 5 for the ball): where the border of
-/// the box, as of the window, cuts the ball the error can reach the weight of a position, 0.07
-/// (0.16 for the center).
+/// Exact up to rounding, yaw_pitch by quadrature along the silhouette's edges (see
+/// YawPitchProjection). With a radius it is the mean over 13 positions of the eye, a formula of
+/// degree 5 for the ball: the error is a fifth-order term of radius over distance for boxes farther
+/// away than a few radii, and at most the weight of one position (0.07; 0.16 for the center) for
+/// each that a border of the box or of the window judges wrongly.
 ///
 /// Cost: one silhouette from a table; clipping only for boxes at the window's border. No
 /// allocation.
 class RadialMeasure {
 public:
+    /// `params` as RadialDistribution requires them; throws Error otherwise.
     explicit RadialMeasure(const RadialParams& params, MeasureMode mode = MeasureMode::exact);
 
     [[nodiscard]] float operator()(const Aabb& box) const;
 
-    /// Area of the whole shadow over the window's area, window border ignored but not the start
-    /// depth (a box that reaches behind it is clipped); may exceed 1; +inf when the eye is inside
-    /// or the shadow reaches the horizon. 1 / (4 pi) of the solid angle when there is no window.
+    /// Probability that a pinhole's ray meets both boxes, whatever the emission: the common part of
+    /// their shadows on the window. nullopt when there is no window. The radius is ignored.
+    [[nodiscard]] std::optional<double> shared(const Aabb& a, const Aabb& b) const;
+
+    /// Area of the whole shadow over the window's area, window border, start depth and radius
+    /// ignored; may exceed 1; +inf when the box reaches the plane of the eye. Without a window: the
+    /// solid angle over 4 pi. The thesis's unculled measure.
     [[nodiscard]] double unculled(const Aabb& box) const;
 
-    [[nodiscard]] const RadialParams& params() const { return params_; }
+    /// The common part of two whole shadows, as `unculled`; nullopt when there is no window or a
+    /// box reaches the plane of the eye.
+    [[nodiscard]] std::optional<double> unculled_shared(const Aabb& a, const Aabb& b) const;
 
 private:
-    [[nodiscard]] double from(Vec3d eye, const Aabb& box) const;
+    /// The emission all around a point.
+    struct AllAround {
+        Vec3d eye;
 
-    RadialParams params_;
+        [[nodiscard]] double operator()(const Aabb& box) const;
+    };
+
+    /// What one position of the eye sees, and its weight in the mean.
+    struct Sight {
+        std::variant<PerspectiveProjection, SolidAngleProjection, YawPitchProjection, AllAround>
+            share;
+        double weight;
+    };
+
+    [[nodiscard]] static Sight
+    sight_from(const RadialParams& params, Vec3d shift, double weight, MeasureMode mode);
+
+    Vec3d eye_;
     MeasureMode mode_;
-    double total_ = 1; // of the emission over the window, in its own unit
+    std::optional<PerspectiveView> view_; // nullopt: no window
+    std::shared_ptr<const std::vector<Sight>> sights_;
 };
 
 /// Rays from the eye (or from the plane at the start depth) into the window, unit directions.
