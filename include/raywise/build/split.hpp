@@ -1,0 +1,108 @@
+// A way to divide a node, how candidates are compared, and the stable partition that carries one
+// out.
+#pragma once
+
+#include <raywise/build/prim_box.hpp>
+#include <raywise/core/executor.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+namespace raywise {
+
+/// A candidate's price and balance.
+struct SplitCost {
+    double sum = std::numeric_limits<double>::infinity(); ///< m(L) n_L + m(R) n_R
+    std::size_t larger = 0;                               ///< primitives of the larger child
+    float left_mass = 0;
+    float right_mass = 0;
+
+    /// Ties go to the more balanced. Between equals the one found first stays, so candidates come
+    /// in the order axis, plane.
+    [[nodiscard]] bool is_better_than(const SplitCost& other) const {
+        return sum < other.sum || (sum == other.sum && larger < other.larger);
+    }
+};
+
+/// Primitives on the way from one array to the other: [first, last) of `from` goes to the same
+/// slots of `to`.
+struct PrimRange {
+    PrimBox* from = nullptr;
+    PrimBox* to = nullptr;
+    std::size_t first = 0;
+    std::size_t last = 0;
+
+    [[nodiscard]] std::size_t count() const { return last - first; }
+
+    /// A part of what has arrived.
+    [[nodiscard]] PrimRange arrived(std::size_t begin, std::size_t end) const {
+        return {to, from, begin, end};
+    }
+};
+
+/// Ranges of at least two chunks are worked on in chunks.
+inline constexpr std::size_t prim_chunk = 1U << 14U;
+
+/// Moves the primitives for which `is_left` holds to [first, middle) and the rest behind, both in
+/// their old order; `middle` must fit. The same result for any executor.
+template <class IsLeft>
+void partition_stable(
+    const PrimRange& range,
+    std::size_t middle,
+    const IsLeft& is_left,
+    const Executor& executor
+) {
+    const PrimBox* from = range.from + range.first;
+    const auto scatter = [&](std::size_t begin, std::size_t end, std::size_t left, std::size_t right
+                         ) {
+        for (std::size_t i = begin; i < end; ++i) {
+            // No branch: which side is next cannot be predicted.
+            const bool goes_left = is_left(from[i]);
+            range.to[goes_left ? left : right] = from[i];
+            left += goes_left ? 1 : 0;
+            right += goes_left ? 0 : 1;
+        }
+    };
+    const std::size_t count = range.count();
+    if (executor.threads() == 1 || count < 2 * prim_chunk) {
+        scatter(0, count, range.first, middle);
+        return;
+    }
+    std::vector<std::size_t> left_before((count + prim_chunk - 1) / prim_chunk + 1, 0);
+    executor.for_each_chunk(count, prim_chunk, [&](std::size_t begin, std::size_t end) {
+        std::size_t left = 0;
+        for (std::size_t i = begin; i < end; ++i)
+            left += is_left(from[i]) ? std::size_t{1} : std::size_t{0};
+        left_before[begin / prim_chunk + 1] = left;
+    });
+    for (std::size_t c = 1; c < left_before.size(); ++c)
+        left_before[c] += left_before[c - 1];
+    executor.for_each_chunk(count, prim_chunk, [&](std::size_t begin, std::size_t end) {
+        const std::size_t left = left_before[begin / prim_chunk];
+        scatter(begin, end, range.first + left, middle + (begin - left));
+    });
+}
+
+/// The box around the primitives that a range comes with; the same for any executor.
+[[nodiscard]] QuadBox bound_boxes(const PrimRange& range, const Executor& executor);
+
+/// Divides a range so that the `middle - first` primitives of the least (centroid on `axis`, id) go
+/// left: the median split, which separates even what coincides.
+class MedianSplit {
+public:
+    MedianSplit(const PrimRange& range, std::size_t middle, int axis);
+
+    [[nodiscard]] bool operator()(const PrimBox& item) const {
+        const float c = item.lo[axis_] + item.hi[axis_];
+        return c < centroid_ || (c == centroid_ && item.id() < id_);
+    }
+
+private:
+    int axis_;
+    float centroid_ = 0; ///< of the first primitive that goes right
+    PrimId id_{};
+};
+
+} // namespace raywise

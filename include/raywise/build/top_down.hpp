@@ -1,0 +1,232 @@
+// The recursion that the three-axis builders share: find a split, compare with a leaf, divide, go
+// on, in parallel, within a bounded depth.
+#pragma once
+
+#include <raywise/build/binned_params.hpp>
+#include <raywise/build/bins.hpp>
+#include <raywise/build/node_metric.hpp>
+#include <raywise/build/prim_box.hpp>
+#include <raywise/build/split.hpp>
+#include <raywise/build/tree_assembly.hpp>
+#include <raywise/bvh/bvh.hpp>
+#include <raywise/core/executor.hpp>
+#include <raywise/geometry/aabb.hpp>
+#include <raywise/geometry/hit_measure.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <span>
+
+namespace raywise {
+
+/// What a search is told about a node.
+struct SearchNode {
+    const PrimBox* items = nullptr;
+    std::size_t count = 0;
+    Aabb box;
+    QuadBox centroids; ///< bounds of the doubled centroids
+};
+
+/// What is known of the two halves of a node after a split was chosen.
+struct Halves {
+    std::size_t left_count = 0;
+    Aabb left;
+    Aabb right;
+    float left_mass = 0;
+    float right_mass = 0;
+};
+
+/// Builds top down. `Search` answers search(node, metric, executor) with an optional split that has
+/// `cost` (SplitCost) and `left_count`, tells an item's side (operator()) and the boxes
+/// (`left_box()`, `right_box()`).
+template <HitMeasure M, class Search>
+class TopDown {
+public:
+    TopDown(const BinnedParams& params, const Executor& executor, const Search& search)
+        : params_(params), executor_(executor), search_(search) {}
+
+    [[nodiscard]] Bvh build(std::span<const Aabb> boxes, const M& measure);
+
+private:
+    struct Task {
+        PrimRange range;
+        std::size_t slot = 0; ///< of the node in the room
+        int level = 0;
+        Aabb box;
+        NodeMass mass;
+    };
+
+    struct Children {
+        Task left;
+        Task right;
+    };
+
+    /// Subtrees of fewer primitives stay on one thread.
+    static constexpr std::size_t parallel_grain = 2048;
+
+    NodeBlocks build_parallel(const Task& task, const M& measure);
+    std::size_t build_serial(const Task& task, const M& measure, std::size_t next);
+    [[nodiscard]] std::optional<Children>
+    divide(const Task& task, const M& measure, const Executor& executor);
+
+    template <class Measure>
+    [[nodiscard]] std::optional<Halves>
+    halve(const Task& task, NodeMass mass, const Measure& metric, const Executor& executor) const;
+
+    [[nodiscard]] bool is_leaf_cheaper(std::size_t count, double sum, float mass) const {
+        const double split =
+            2 * params_.cost.node + params_.cost.prim * (sum / static_cast<double>(mass));
+        return !(split < params_.cost.prim * static_cast<double>(count));
+    }
+
+    /// Most primitives that halving can bring to leaves from `level` on.
+    [[nodiscard]] std::size_t capacity(int level) const {
+        const int halvings = std::min(params_.max_depth - level, 31);
+        return static_cast<std::size_t>(params_.max_leaf_size) << static_cast<unsigned>(halvings);
+    }
+
+    void put_leaf(const Task& task);
+
+    const BinnedParams& params_;
+    const Executor& executor_;
+    const Search& search_;
+    std::optional<NodeRoom> room_;
+    std::vector<PrimId> prims_;
+};
+
+template <HitMeasure M, class Search>
+Bvh TopDown<M, Search>::build(std::span<const Aabb> boxes, const M& measure) {
+    if (boxes.empty()) return {};
+    const PrimBoxes items = load_boxes(boxes, executor_);
+    room_.emplace(boxes.size());
+    prims_.resize(boxes.size());
+
+    Task root;
+    root.range = {items.items.get(), items.spare.get(), 0, boxes.size()};
+    root.box = to_aabb(bound_boxes(root.range, executor_));
+    const auto& local = narrowed_to(measure, root.box);
+    root.mass.mass = static_cast<float>(local(root.box));
+    const NodeBlocks blocks = build_parallel(root, local);
+    return {pack_nodes(*room_, blocks, executor_), std::move(prims_)};
+}
+
+template <HitMeasure M, class Search>
+NodeBlocks TopDown<M, Search>::build_parallel(const Task& task, const M& measure) {
+    if (executor_.threads() == 1 || task.range.count() < parallel_grain) {
+        const std::size_t begin = NodeRoom::first_slot(task.range.first);
+        const std::size_t end = build_serial(task, measure, begin);
+        return end > begin ? NodeBlocks{{begin, end}} : NodeBlocks{};
+    }
+    std::optional<Children> children = divide(task, measure, executor_);
+    if (!children) return {};
+
+    const std::size_t pair = NodeRoom::pair_slot(children->right.range.first);
+    children->left.slot = pair;
+    children->right.slot = pair + 1;
+    room_->put(task.slot, Node::inner(task.box, to_node(pair)));
+    NodeBlocks left;
+    NodeBlocks right;
+    executor_.invoke(
+        [&] { left = build_parallel(children->left, narrowed_to(measure, children->left.box)); },
+        [&] { right = build_parallel(children->right, narrowed_to(measure, children->right.box)); }
+    );
+    NodeBlocks all{{pair, pair + 2}};
+    all.insert(all.end(), left.begin(), left.end());
+    all.insert(all.end(), right.begin(), right.end());
+    return all;
+}
+
+/// Puts the descendants at `next` and after; returns the slot behind the last.
+template <HitMeasure M, class Search>
+std::size_t TopDown<M, Search>::build_serial(const Task& task, const M& measure, std::size_t next) {
+    std::optional<Children> children = divide(task, measure, serial_executor());
+    if (!children) return next;
+    children->left.slot = next;
+    children->right.slot = next + 1;
+    room_->put(task.slot, Node::inner(task.box, to_node(next)));
+    next = build_serial(children->left, narrowed_to(measure, children->left.box), next + 2);
+    return build_serial(children->right, narrowed_to(measure, children->right.box), next);
+}
+
+template <HitMeasure M, class Search>
+auto TopDown<M, Search>::divide(const Task& task, const M& measure, const Executor& executor)
+    -> std::optional<Children> {
+    std::optional<Halves> halves;
+    const NodeMass mass = visible_mass(task.box, task.mass);
+    if (task.range.count() > 1 && task.level < params_.max_depth)
+        halves = with_metric(mass.metric, measure, [&](const auto& metric) {
+            return halve(task, mass, metric, executor);
+        });
+    if (!halves) {
+        put_leaf(task);
+        return std::nullopt;
+    }
+    const std::size_t middle = task.range.first + halves->left_count;
+    Children children;
+    children.left.range = task.range.arrived(task.range.first, middle);
+    children.left.box = halves->left;
+    children.left.mass = {mass.metric, halves->left_mass};
+    children.left.level = task.level + 1;
+    children.right.range = task.range.arrived(middle, task.range.last);
+    children.right.box = halves->right;
+    children.right.mass = {mass.metric, halves->right_mass};
+    children.right.level = task.level + 1;
+    return children;
+}
+
+template <HitMeasure M, class Search>
+template <class Measure>
+std::optional<Halves> TopDown<M, Search>::halve(
+    const Task& task,
+    NodeMass mass,
+    const Measure& metric,
+    const Executor& executor
+) const {
+    const std::size_t count = task.range.count();
+    const PrimBox* items = task.range.from + task.range.first;
+    const SearchNode node{items, count, task.box, bound_centroids(items, count, executor)};
+    const auto split = search_(node, metric, executor);
+    if (count <= params_.max_leaf_size &&
+        (!split || is_leaf_cheaper(count, split->cost.sum, mass.mass)))
+        return std::nullopt;
+
+    // A lopsided split is refused where the levels left would not do for its larger child.
+    if (split && split->cost.larger <= capacity(task.level + 1)) {
+        partition_stable(task.range, task.range.first + split->left_count, *split, executor);
+        return Halves{
+            split->left_count,
+            split->left_box(),
+            split->right_box(),
+            split->cost.left_mass,
+            split->cost.right_mass
+        };
+    }
+    const std::size_t left_count = count / 2;
+    const std::size_t middle = task.range.first + left_count;
+    const int axis = dominant_axis(to_vec(node.centroids.hi - node.centroids.lo));
+    partition_stable(task.range, middle, MedianSplit(task.range, middle, axis), executor);
+    const PrimRange left_range = task.range.arrived(task.range.first, middle);
+    const PrimRange right_range = task.range.arrived(middle, task.range.last);
+    const Aabb left = to_aabb(bound_boxes(left_range, executor));
+    const Aabb right = to_aabb(bound_boxes(right_range, executor));
+    return Halves{
+        left_count, left, right, static_cast<float>(metric(left)), static_cast<float>(metric(right))
+    };
+}
+
+template <HitMeasure M, class Search>
+void TopDown<M, Search>::put_leaf(const Task& task) {
+    for (std::size_t i = task.range.first; i < task.range.last; ++i)
+        prims_[i] = task.range.from[i].id();
+    room_->put(
+        task.slot,
+        Node::leaf(
+            task.box,
+            static_cast<std::uint32_t>(task.range.first),
+            static_cast<std::uint32_t>(task.range.count())
+        )
+    );
+}
+
+} // namespace raywise
