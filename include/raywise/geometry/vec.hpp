@@ -108,7 +108,7 @@ template <class T>
 }
 
 [[nodiscard]] constexpr Vec3d to_double(Vec3 a) {
-    return {a.x, a.y, a.z};
+    return {static_cast<double>(a.x), static_cast<double>(a.y), static_cast<double>(a.z)};
 }
 
 /// Each component rounded to the nearest float.
