@@ -1,0 +1,234 @@
+#include <raywise/geometry/ray_triangle.hpp>
+
+#include "geometry/detail/expansion.hpp"
+
+#include <raywise/core/ids.hpp>
+#include <raywise/geometry/ray.hpp>
+#include <raywise/geometry/triangle.hpp>
+#include <raywise/geometry/vec.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+// With a, b, c the vertices as seen from the origin and d the direction, the line meets the
+// triangle's plane at the weights U : V : W = d.(b x c) : d.(c x a) : d.(a x b), at
+// t = a.(b x c) / (U + V + W).
+namespace raywise {
+
+namespace {
+
+using detail::Expansion;
+
+/// A double and how far the exact value may be from it.
+struct Bounded {
+    double value;
+    double error;
+
+    [[nodiscard]] int sure_sign() const { return value > error ? 1 : value < -error ? -1 : 0; }
+};
+
+/// p . (q x r). Each product of three carries the roundings of its factors, at most three, and its
+/// own four; summed, at most gamma(9) of the sum of their magnitudes. 12 units are granted, for the
+/// rounding of that sum. No under- or overflow: products of three differences of floats stay within
+/// 2^-447 and 2^390.
+Bounded triple_product(const Vec3d& p, const Vec3d& q, const Vec3d& r) {
+    const double yz = q.y * r.z, zy = q.z * r.y;
+    const double zx = q.z * r.x, xz = q.x * r.z;
+    const double xy = q.x * r.y, yx = q.y * r.x;
+    const double value = p.x * (yz - zy) + p.y * (zx - xz) + p.z * (xy - yx);
+    const double size = std::abs(p.x) * (std::abs(yz) + std::abs(zy)) +
+                        std::abs(p.y) * (std::abs(zx) + std::abs(xz)) +
+                        std::abs(p.z) * (std::abs(xy) + std::abs(yx));
+    return {value, 12 * 0x1p-53 * size};
+}
+
+using Exact2 = Expansion<2>;
+
+struct ExactVec {
+    Exact2 x, y, z;
+};
+
+ExactVec exact_difference(Vec3 a, Vec3 b) {
+    return {
+        detail::difference(a.x, b.x), detail::difference(a.y, b.y), detail::difference(a.z, b.z)
+    };
+}
+
+using ExactVolume = Expansion<192>;
+
+ExactVolume exact_triple_product(const ExactVec& p, const ExactVec& q, const ExactVec& r) {
+    const auto x = detail::compress(q.y * r.z - q.z * r.y) * p.x;
+    const auto y = detail::compress(q.z * r.x - q.x * r.z) * p.y;
+    const auto z = detail::compress(q.x * r.y - q.y * r.x) * p.z;
+    return detail::compress(x + y + z);
+}
+
+/// The nearest float to num / den > or < 0 exactly, ties to even; +inf or -inf beyond the floats.
+/// den != 0.
+template <std::size_t N, std::size_t M>
+float nearest_quotient(const Expansion<N>& num, const Expansion<M>& den) {
+    const double estimate = num.estimate() / den.estimate(); // within 2^-49
+    const auto nearest = static_cast<float>(estimate);
+    const double rest = estimate - static_cast<double>(nearest);
+    if (rest == 0) return nearest; // a float itself is far from every midpoint
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    // The midpoint that the estimate is next to, and the float on its other side.
+    constexpr double overflow = 0x1.FFFFFFp127; // midpoint of the largest float and 2^128
+    float other = std::nextafter(nearest, rest > 0 ? infinity : -infinity);
+    double middle = (static_cast<double>(nearest) + static_cast<double>(other)) / 2;
+    if (std::isinf(nearest)) {
+        other = std::copysign(std::numeric_limits<float>::max(), nearest);
+        middle = std::copysign(overflow, static_cast<double>(nearest));
+    } else if (std::isinf(other)) {
+        middle = std::copysign(overflow, static_cast<double>(other));
+    }
+    if (std::abs(estimate - middle) > 0x1p-45 * std::abs(middle)) return nearest;
+    const int above = (num - den * middle).sign() * den.sign();
+    if (above != 0) return above > 0 ? std::max(nearest, other) : std::min(nearest, other);
+    // A tie goes to the even one, which is the only one of the two that twice its spacing divides.
+    return static_cast<float>(middle);
+}
+
+struct Weights {
+    Bounded u, v, w;
+};
+
+/// One triangle, decided step by step; the steps after the first are rare.
+class Decision {
+public:
+    Decision(const Ray& ray, const Triangle& triangle) : ray_(ray), triangle_(triangle) {
+        const Vec3d o = to_double(ray.origin);
+        a_ = to_double(triangle.v0) - o;
+        b_ = to_double(triangle.v1) - o;
+        c_ = to_double(triangle.v2) - o;
+        const Vec3d d = to_double(ray.direction);
+        weights_ = {
+            triple_product(d, b_, c_), triple_product(d, c_, a_), triple_product(d, a_, b_)
+        };
+    }
+
+    [[nodiscard]] std::optional<Hit> hit(PrimId id, float t_max) {
+        const int side = common_side();
+        if (side == 0) return std::nullopt;
+        const Bounded sum = weight_sum();
+        const std::optional<float> t = nearest_t(sum, t_max);
+        if (!t || !(*t >= ray_.t_min && *t <= t_max)) return std::nullopt;
+        if (std::isinf(*t)) return std::nullopt;
+        const auto weight = [&](const Bounded& part) {
+            return static_cast<float>(std::clamp(part.value / sum.value, 0.0, 1.0));
+        };
+        // Adding +0 turns -0 into +0.
+        return Hit{*t + 0.0F, weight(weights_.v), weight(weights_.w), id, side < 0};
+    }
+
+private:
+    /// The sign that all nonzero weights have; 0 when they differ or all are zero.
+    [[nodiscard]] int common_side() {
+        const auto [least, greatest] = sign_range();
+        if (least < 0 && greatest > 0) return 0;
+        const bool all_sure = weights_.u.sure_sign() != 0 && weights_.v.sure_sign() != 0 &&
+                              weights_.w.sure_sign() != 0;
+        if (!all_sure) {
+            make_exact();
+            const auto [lower, upper] = sign_range();
+            return lower < 0 && upper > 0 ? 0 : lower + upper == 0 ? 0 : lower + upper > 0 ? 1 : -1;
+        }
+        return greatest;
+    }
+
+    [[nodiscard]] std::pair<int, int> sign_range() const {
+        return std::minmax({weights_.u.sure_sign(), weights_.v.sure_sign(), weights_.w.sure_sign()}
+        );
+    }
+
+    /// U + V + W, all of one sign, to better than 2^-30, so that u and v are good floats.
+    [[nodiscard]] Bounded weight_sum() {
+        const auto sum = [this] {
+            return Bounded{
+                weights_.u.value + weights_.v.value + weights_.w.value,
+                (weights_.u.error + weights_.v.error + weights_.w.error) * (1 + 0x1p-50) +
+                    0x1p-51 * std::abs(weights_.u.value + weights_.v.value + weights_.w.value)
+            };
+        };
+        if (const Bounded s = sum(); s.error <= 0x1p-30 * std::abs(s.value)) return s;
+        make_exact();
+        return sum();
+    }
+
+    /// t rounded to float; nothing when it is surely outside [t_min, t_max].
+    [[nodiscard]] std::optional<float> nearest_t(const Bounded& sum, float t_max) {
+        const Bounded volume = triple_product(a_, b_, c_);
+        const double t = volume.value / sum.value;
+        const double error = (volume.error + std::abs(t) * sum.error) /
+                                 (std::abs(sum.value) - sum.error) * (1 + 0x1p-40) +
+                             0x1p-51 * std::abs(t);
+        const auto low = static_cast<float>(t - error);
+        const auto high = static_cast<float>(t + error);
+        if (low == high) return low;
+        if (high < ray_.t_min || low > t_max) return std::nullopt;
+        make_exact();
+        return nearest_quotient(
+            exact_triple_product(exact_a_, exact_b_, exact_c_), exact_u_ + exact_v_ + exact_w_
+        );
+    }
+
+    void make_exact() {
+        if (is_exact_) return;
+        is_exact_ = true;
+        exact_a_ = exact_difference(triangle_.v0, ray_.origin);
+        exact_b_ = exact_difference(triangle_.v1, ray_.origin);
+        exact_c_ = exact_difference(triangle_.v2, ray_.origin);
+        const ExactVec d = exact_difference(ray_.direction, Vec3{});
+        exact_u_ = exact_triple_product(d, exact_b_, exact_c_);
+        exact_v_ = exact_triple_product(d, exact_c_, exact_a_);
+        exact_w_ = exact_triple_product(d, exact_a_, exact_b_);
+        const auto bounded = [](const ExactVolume& volume) {
+            const double value = volume.estimate();
+            return Bounded{value, 0x1p-51 * std::abs(value)};
+        };
+        weights_ = {bounded(exact_u_), bounded(exact_v_), bounded(exact_w_)};
+    }
+
+    const Ray& ray_;
+    const Triangle& triangle_;
+    Vec3d a_, b_, c_;
+    Weights weights_;
+    bool is_exact_ = false;
+    ExactVec exact_a_, exact_b_, exact_c_;
+    ExactVolume exact_u_, exact_v_, exact_w_;
+};
+
+} // namespace
+
+ExactKernel::ExactKernel(const Ray& ray) : ray_(&ray) {
+    const int z = dominant_axis(ray.direction);
+    const int x = (z + 1) % 3;
+    const int y = (z + 2) % 3;
+    const auto offset = [](int axis) { return static_cast<std::size_t>(axis) * sizeof(float); };
+    x_ = offset(x);
+    y_ = offset(y);
+    z_ = offset(z);
+    origin_x_ = ray.origin[x];
+    origin_y_ = ray.origin[y];
+    origin_z_ = ray.origin[z];
+    shear_x_ = ray.direction[x] / ray.direction[z];
+    shear_y_ = ray.direction[y] / ray.direction[z];
+}
+
+std::optional<Hit>
+ExactKernel::decide(const Ray& ray, const Triangle& triangle, PrimId id, float t_max) {
+    if (!is_finite(triangle.v0) || !is_finite(triangle.v1) || !is_finite(triangle.v2))
+        return std::nullopt;
+    return Decision(ray, triangle).hit(id, t_max);
+}
+
+std::optional<Hit> intersect(const Ray& ray, const Triangle& triangle, PrimId id, FaceMode faces) {
+    if (!is_valid(ray) || id == ray.excluded) return std::nullopt;
+    const std::optional<Hit> hit = ExactKernel::decide(ray, triangle, id, ray.t_max);
+    return hit && (faces == FaceMode::both || hit->front) ? hit : std::nullopt;
+}
+
+} // namespace raywise
