@@ -30,7 +30,7 @@ struct ParallelArea {
     Region region;                  ///< with a shadow of positive area
     double cone_half_angle_deg = 0; ///< see ParallelParams
     double density = 1;             ///< relative weight, > 0, finite
-    Affinity affinity;
+    Affinity affinity{};
 };
 
 /// What InfluenceArea::radial takes: the window is the region as seen from the apex.
@@ -41,7 +41,7 @@ struct RadialArea {
                                              ///< the apex: within some half space through it
     double radius = 0;                       ///< see RadialParams
     double density = 1;                      ///< relative weight, > 0, finite
-    Affinity affinity;
+    Affinity affinity{};
 };
 
 /// The plane form of [Falcone24]: an oriented box behind a rectangle.
@@ -52,7 +52,7 @@ struct PlaneArea {
     double half_height = 1; ///< scene units, > 0
     double depth = 1;       ///< of the region along the normal, > 0, finite
     double density = 1;     ///< > 0
-    Affinity affinity;
+    Affinity affinity{};
 };
 
 /// The point form of [Falcone24]: a frustum; rays start on its near plane.
@@ -65,7 +65,7 @@ struct PointArea {
     double far = 1;        ///< > near, finite
     Emission emission = Emission::pinhole;
     double density = 1; ///< > 0
-    Affinity affinity;
+    Affinity affinity{};
 };
 
 /// What InfluenceArea::measured takes.
@@ -73,7 +73,7 @@ struct MeasuredArea {
     MeasuredParams rays;
     std::optional<Region> region; ///< nullopt: a box around the origins, along their mean direction
     double density = 1;           ///< > 0, finite
-    Affinity affinity;
+    Affinity affinity{};
 };
 
 /// A region, the rays that belong to it, and a name. The makers validate every parameter and throw
@@ -83,7 +83,7 @@ struct InfluenceArea {
     Region region;
     Distribution distribution;
     double density = 1;
-    Affinity affinity;
+    Affinity affinity{};
 
     [[nodiscard]] static InfluenceArea parallel(std::string name, const ParallelArea& area);
     [[nodiscard]] static InfluenceArea radial(std::string name, const RadialArea& area);
