@@ -37,8 +37,8 @@ enum class RegionIndexKind : std::uint8_t { list, octree, bvh };
 
 struct RegionIndexParams {
     /// Absent: a list up to eight regions, beyond that a BVH.
-    std::optional<RegionIndexKind> kind;
-    OctreeParams octree; ///< of the octree only
+    std::optional<RegionIndexKind> kind{};
+    OctreeParams octree{}; ///< of the octree only
 };
 
 /// Copies the regions; area i is regions[i]. Throws Error for parameters out of range.
