@@ -4,7 +4,7 @@
 
 #include <raywise/geometry/aabb.hpp>
 #include <raywise/geometry/convex_polygon.hpp>
-#include <raywise/geometry/projected_area.hpp>
+#include <raywise/geometry/perspective_area.hpp>
 #include <raywise/geometry/vec.hpp>
 
 namespace raywise {

@@ -1,0 +1,219 @@
+#include <raywise/geometry/solid_angle.hpp>
+
+#include <raywise/geometry/aabb.hpp>
+#include <raywise/geometry/convex_polygon.hpp>
+#include <raywise/geometry/perspective_area.hpp>
+#include <raywise/geometry/silhouette.hpp>
+#include <raywise/geometry/vec.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <cstddef>
+#include <numbers>
+
+namespace raywise {
+
+namespace {
+
+using Relation = PerspectiveView::Relation;
+
+/// Signed solid angle of the triangle (a, b, c) seen from the origin. The determinant is taken of
+/// the edges, so that a small triangle far away keeps its digits. [VanOosterom83]
+double triangle_solid_angle_sr(Vec3d a, Vec3d b, Vec3d c) {
+    const double la = length(a);
+    const double lb = length(b);
+    const double lc = length(c);
+    const double determinant = dot(a, cross(b - a, c - a));
+    const double denominator = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
+    return 2 * std::atan2(determinant, denominator);
+}
+
+Vec3d on_image_plane(Vec2d p) {
+    return {p.x, p.y, 1};
+}
+
+/// The polygon with its coordinates multiplied by (x, y).
+ConvexPolygon scaled(const ConvexPolygon& polygon, double x, double y) {
+    ConvexPolygon result;
+    for (const Vec2d p : polygon)
+        result.push_back({p.x * x, p.y * y});
+    return result;
+}
+
+/// A line of the image plane, as the pitch over the yaw: tan pitch = slope sin yaw + offset cos
+/// yaw. It is the latitude of a great circle over the longitude.
+struct GreatCircle {
+    double slope;
+    double offset;
+
+    [[nodiscard]] double pitch(double yaw) const {
+        return std::atan(slope * std::sin(yaw) + offset * std::cos(yaw));
+    }
+
+    /// Parameter of the largest Bernstein ellipse around [from, to] in which the pitch is analytic:
+    /// n Gauss points err like rho^(-2n). The pitch is singular where its tangent is +-i.
+    [[nodiscard]] double bernstein_rho(double from, double to) const {
+        const double middle = (from + to) / 2;
+        const double half = std::abs(to - from) / 2;
+        const double phase = std::atan2(offset, slope);
+        const std::complex<double> nearest(
+            std::remainder(middle + phase, std::numbers::pi) / half,
+            std::asinh(1 / std::hypot(slope, offset)) / half
+        );
+        const double sum = (std::abs(nearest - 1.0) + std::abs(nearest + 1.0)) / 2;
+        return sum + std::sqrt(sum * sum - 1);
+    }
+};
+
+double gauss_legendre_8(const GreatCircle& circle, double from, double to) {
+    constexpr std::array<double, 4> nodes{
+        0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363
+    };
+    constexpr std::array<double, 4> weights{
+        0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763
+    };
+    const double middle = (from + to) / 2;
+    const double half = (to - from) / 2;
+    double sum = 0;
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+        sum += weights[i] *
+               (circle.pitch(middle - half * nodes[i]) + circle.pitch(middle + half * nodes[i]));
+    return sum * half;
+}
+
+/// Integral of the pitch over the yaw. Halved until eight Gauss points err below 4^-16 per radian;
+/// only towards the singularity are halves halved again.
+double integrate_pitch(const GreatCircle& circle, double from, double to, int halvings = 48) {
+    constexpr double enough = 4;
+    if (from == to) return 0;
+    if (halvings == 0 || circle.bernstein_rho(from, to) >= enough)
+        return gauss_legendre_8(circle, from, to);
+    const double middle = (from + to) / 2;
+    return integrate_pitch(circle, from, middle, halvings - 1) +
+           integrate_pitch(circle, middle, to, halvings - 1);
+}
+
+/// Parameters in (0, 1) at which the edge from p to q crosses |pitch| = limit, between 0 and 1 in
+/// order: where y^2 = limit^2 (1 + x^2).
+struct Cuts {
+    std::array<double, 4> at{0, 1, 1, 1};
+    std::size_t size = 2;
+};
+
+Cuts cut_at_pitch(Vec2d p, Vec2d q, double tan_limit) {
+    const Vec2d d = q - p;
+    const double limit = tan_limit * tan_limit;
+    const double a = d.y * d.y - limit * d.x * d.x;
+    const double b = p.y * d.y - limit * p.x * d.x; // half the linear coefficient
+    const double c = p.y * p.y - limit * (1 + p.x * p.x);
+    const double discriminant = b * b - a * c;
+    Cuts cuts;
+    if (!(discriminant > 0)) return cuts;
+    const double s = -(b + std::copysign(std::sqrt(discriminant), b));
+    std::array<double, 2> roots{a != 0 ? s / a : -1, s != 0 ? c / s : -1};
+    std::sort(roots.begin(), roots.end());
+    cuts.size = 1;
+    for (const double root : roots)
+        if (root > 0 && root < 1) cuts.at[cuts.size++] = root;
+    cuts.at[cuts.size++] = 1;
+    return cuts;
+}
+
+/// Integral of the pitch, held within +- limit, over the yaw along the edge from p to q.
+double integrate_edge(Vec2d p, Vec2d q, double limit_rad) {
+    if (p.x == q.x) return 0;
+    const double slope = (q.y - p.y) / (q.x - p.x);
+    const GreatCircle circle{slope, p.y - slope * p.x};
+    const double tan_limit = std::tan(limit_rad);
+    const Cuts cuts = cut_at_pitch(p, q, tan_limit);
+    double sum = 0;
+    for (std::size_t i = 0; i + 1 < cuts.size; ++i) {
+        const double from = std::atan(p.x + (q.x - p.x) * cuts.at[i]);
+        const double to = std::atan(p.x + (q.x - p.x) * cuts.at[i + 1]);
+        const Vec2d middle = p + (q - p) * ((cuts.at[i] + cuts.at[i + 1]) / 2);
+        const bool held = std::abs(middle.y) > tan_limit * std::hypot(1.0, middle.x);
+        sum += held ? std::copysign(limit_rad, middle.y) * (to - from)
+                    : integrate_pitch(circle, from, to);
+    }
+    return sum;
+}
+
+/// A window that every ray of the window's square cap passes.
+PerspectiveWindow around_square_cap(PerspectiveWindow window) {
+    window.tan_y *= std::hypot(1.0, window.tan_x);
+    return window;
+}
+
+} // namespace
+
+double solid_angle_sr(const Aabb& box, Vec3d eye) {
+    if (box.is_empty()) return 0;
+    const Silhouette& cycle = silhouette(view_from(box, eye));
+    if (cycle.size == 0) return 4 * std::numbers::pi;
+    const auto corner = [&](std::size_t i) {
+        return to_double(box.vertex(cycle.vertices[i])) - eye;
+    };
+    double sum = 0;
+    for (std::size_t i = 1; i + 1 < cycle.size; ++i)
+        sum += triangle_solid_angle_sr(corner(0), corner(i), corner(i + 1));
+    return std::abs(sum);
+}
+
+double window_solid_angle_sr(double tan_x, double tan_y) {
+    const double sine_x = tan_x / std::hypot(1.0, tan_x);
+    const double sine_y = tan_y / std::hypot(1.0, tan_y);
+    return 4 * std::asin(sine_x * sine_y);
+}
+
+double polygon_solid_angle_sr(const ConvexPolygon& polygon) {
+    double sum = 0;
+    for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
+        sum += triangle_solid_angle_sr(
+            on_image_plane(polygon[0]), on_image_plane(polygon[i]), on_image_plane(polygon[i + 1])
+        );
+    return std::abs(sum);
+}
+
+double polygon_yaw_pitch_rad2(const ConvexPolygon& polygon, double pitch_limit_rad) {
+    if (polygon.size() < 3) return 0;
+    double sum = 0;
+    for (std::size_t i = 0; i < polygon.size(); ++i)
+        sum += integrate_edge(polygon[i], polygon.after(i), pitch_limit_rad);
+    return std::abs(sum);
+}
+
+SolidAngleProjection::SolidAngleProjection(const PerspectiveWindow& window)
+    : view_(window), window_sr_(window_solid_angle_sr(window.tan_x, window.tan_y)) {}
+
+double SolidAngleProjection::operator()(const Aabb& box) const {
+    const Relation relation = view_.relation(box);
+    if (relation == Relation::outside) return 0;
+    if (relation == Relation::around) return 1;
+    const double share = view_.sum_over_shadow(box, relation, [&](const ConvexPolygon& piece) {
+        return polygon_solid_angle_sr(scaled(piece, window().tan_x, window().tan_y)) / window_sr_;
+    });
+    return std::clamp(share, 0.0, 1.0);
+}
+
+YawPitchProjection::YawPitchProjection(const PerspectiveWindow& window)
+    : window_(window)
+    , view_(around_square_cap(window))
+    , yaw_limit_rad_(std::atan(window.tan_x))
+    , pitch_limit_rad_(std::atan(window.tan_y)) {}
+
+double YawPitchProjection::operator()(const Aabb& box) const {
+    const Relation relation = view_.relation(box);
+    if (relation == Relation::outside) return 0;
+    if (relation == Relation::around) return 1;
+    const PerspectiveWindow& wide = view_.window();
+    const double share = view_.sum_over_shadow(box, relation, [&](const ConvexPolygon& piece) {
+        const ConvexPolygon on_plane = scaled(piece, wide.tan_x, wide.tan_y);
+        return polygon_yaw_pitch_rad2(on_plane, pitch_limit_rad_) /
+               (4 * yaw_limit_rad_ * pitch_limit_rad_);
+    });
+    return std::clamp(share, 0.0, 1.0);
+}
+
+} // namespace raywise
