@@ -79,7 +79,7 @@ struct Counts {
         , tile_segments(scaled(4, std::cbrt(detail), 2))
         , balusters(scaled(5, std::cbrt(detail), 1))
         , ripples(scaled(14, std::sqrt(detail), 3))
-        , leaves(scaled(1500, detail, 8))
+        , leaves(scaled(2000, detail, 8))
         , courses(scaled(10, std::sqrt(detail), 1)) {}
 };
 
@@ -256,7 +256,7 @@ void add_outer_wall(MeshBuilder& mesh, const Side& side, const Counts& counts, s
     add_box(
         mesh,
         side,
-        {-gallery, -0.06, -gallery},
+        {-gallery - 0.4, -0.06, -gallery},
         {side.length + gallery, eaves + 1.6, -gallery - 0.4}
     );
     const double height = 1.2 / counts.courses;
@@ -425,8 +425,8 @@ void add_courtyard(MeshBuilder& mesh, double detail, std::uint64_t seed) {
         add_roof(mesh, side, counts);
     }
     mesh.begin_group("trees");
-    for (const double x : {-8.0, 8.0})
-        for (const double z : {-4.5, 4.5})
+    for (const double x : {-6.0, 6.0})
+        for (const double z : {-5.6, 5.6})
             add_tree(mesh, {x, 0, z}, counts, ++stream);
     mesh.begin_group("lamp");
     constexpr std::array<ProfilePoint, 4> shade{{{0, 0.1}, {0.05, 0.1}, {0.2, 0.0}, {0.18, 0.0}}};
@@ -459,8 +459,8 @@ Scene generate_courtyard(const GenerateParams& params) {
 
     Camera camera;
     camera.name = "view";
-    camera.eye = {10.5, 2.2, 6.5};
-    camera.frame = frame_along({-0.82, 0.03, -0.56});
+    camera.eye = {11.2, 2.4, 5.2};
+    camera.frame = frame_along({-0.86, 0.04, -0.5});
     camera.fov_x_rad = 1.3;
     camera.fov_y_rad = 0.92;
     camera.near = 0.1;
