@@ -101,9 +101,11 @@ double PerspectiveView::inside_share(const Aabb& box) const {
 
 double PerspectiveView::sum_over_shadow(
     const Aabb& box,
-    Relation relation,
     FunctionRef<double(const ConvexPolygon&)> weigh
 ) const {
+    const Relation lies = relation(box);
+    if (lies == Relation::outside) return 0;
+    if (lies == Relation::around) return weigh(to_polygon(Rectangle{}));
     ViewVertices vertices;
     double least = HUGE_VAL;
     double most = -HUGE_VAL;
@@ -112,7 +114,7 @@ double PerspectiveView::sum_over_shadow(
         least = std::min(least, vertices[i].z);
         most = std::max(most, vertices[i].z);
     }
-    if (relation == Relation::inside) return weigh(outline(box, vertices));
+    if (lies == Relation::inside) return weigh(outline(box, vertices));
     // Dividing by a depth that is small next to the box would send vertices far away, and the
     // window's clip would lose their digits.
     constexpr double shallow = 1e-6;
@@ -189,19 +191,9 @@ Vec3d PerspectiveView::to_view(Vec3d point) const {
 PerspectiveProjection::PerspectiveProjection(const PerspectiveWindow& window) : view_(window) {}
 
 double PerspectiveProjection::operator()(const Aabb& box) const {
-    const PerspectiveView::Relation relation = view_.relation(box);
-    switch (relation) {
-    case PerspectiveView::Relation::outside:
-        return 0;
-    case PerspectiveView::Relation::around:
-        return 1;
-    case PerspectiveView::Relation::inside:
-        return view_.inside_share(box);
-    case PerspectiveView::Relation::across:
-        break;
-    }
+    if (view_.relation(box) == PerspectiveView::Relation::inside) return view_.inside_share(box);
     const auto window_share = [](const ConvexPolygon& piece) { return area(piece) / 4; };
-    return clamped_to_one(view_.sum_over_shadow(box, relation, window_share));
+    return clamped_to_one(view_.sum_over_shadow(box, window_share));
 }
 
 } // namespace raywise

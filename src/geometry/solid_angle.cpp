@@ -17,8 +17,6 @@ namespace raywise {
 
 namespace {
 
-using Relation = PerspectiveView::Relation;
-
 /// Signed solid angle of the triangle (a, b, c) seen from the origin. The determinant is taken of
 /// the edges, so that a small triangle far away keeps its digits. [VanOosterom83]
 double triangle_solid_angle_sr(Vec3d a, Vec3d b, Vec3d c) {
@@ -188,10 +186,7 @@ SolidAngleProjection::SolidAngleProjection(const PerspectiveWindow& window)
     : view_(window), window_sr_(window_solid_angle_sr(window.tan_x, window.tan_y)) {}
 
 double SolidAngleProjection::operator()(const Aabb& box) const {
-    const Relation relation = view_.relation(box);
-    if (relation == Relation::outside) return 0;
-    if (relation == Relation::around) return 1;
-    const double share = view_.sum_over_shadow(box, relation, [&](const ConvexPolygon& piece) {
+    const double share = view_.sum_over_shadow(box, [&](const ConvexPolygon& piece) {
         return polygon_solid_angle_sr(scaled(piece, window().tan_x, window().tan_y)) / window_sr_;
     });
     return std::clamp(share, 0.0, 1.0);
@@ -204,11 +199,8 @@ YawPitchProjection::YawPitchProjection(const PerspectiveWindow& window)
     , pitch_limit_rad_(std::atan(window.tan_y)) {}
 
 double YawPitchProjection::operator()(const Aabb& box) const {
-    const Relation relation = view_.relation(box);
-    if (relation == Relation::outside) return 0;
-    if (relation == Relation::around) return 1;
     const PerspectiveWindow& wide = view_.window();
-    const double share = view_.sum_over_shadow(box, relation, [&](const ConvexPolygon& piece) {
+    const double share = view_.sum_over_shadow(box, [&](const ConvexPolygon& piece) {
         const ConvexPolygon on_plane = scaled(piece, wide.tan_x, wide.tan_y);
         return polygon_yaw_pitch_rad2(on_plane, pitch_limit_rad_) /
                (4 * yaw_limit_rad_ * pitch_limit_rad_);

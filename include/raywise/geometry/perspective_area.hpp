@@ -42,13 +42,10 @@ public:
 
     [[nodiscard]] Relation relation(const Aabb& box) const;
 
-    /// The sum of `weigh(piece)` over the pieces of the shadow of a box whose relation is inside or
-    /// across.
-    [[nodiscard]] double sum_over_shadow(
-        const Aabb& box,
-        Relation relation,
-        FunctionRef<double(const ConvexPolygon&)> weigh
-    ) const;
+    /// The sum of `weigh(piece)` over the pieces of the shadow: none of a box outside, the whole
+    /// window for a box around the eye.
+    [[nodiscard]] double
+    sum_over_shadow(const Aabb& box, FunctionRef<double(const ConvexPolygon&)> weigh) const;
 
     /// The share of the window that the shadow covers; the closed form. Relation inside only.
     [[nodiscard]] double inside_share(const Aabb& box) const;
