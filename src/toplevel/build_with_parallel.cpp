@@ -1,0 +1,9 @@
+// The builders for parallel rays.
+#include "build_with.inl.hpp"
+
+namespace raywise::detail {
+
+template BuiltTree
+build_with(const BuildInput&, const ParallelMeasure&, const ChosenAxes&, const Heuristic&, const Executor&);
+
+} // namespace raywise::detail

@@ -1,0 +1,9 @@
+// The builders for parallel rays with a grain of uniform lines.
+#include "build_with.inl.hpp"
+
+namespace raywise::detail {
+
+template BuiltTree
+build_with(const BuildInput&, const MixedMeasure<ParallelMeasure>&, const ChosenAxes&, const Heuristic&, const Executor&);
+
+} // namespace raywise::detail
