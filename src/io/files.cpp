@@ -70,6 +70,29 @@ private:
     std::string name_;
 };
 
+/// Whether moving a file onto `path` would replace what is not an ordinary file: a device, a pipe.
+bool is_special(const std::filesystem::path& path) {
+    struct stat status{};
+    return ::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode);
+}
+
+void write_all(const Descriptor& file, std::string_view bytes, const std::filesystem::path& path) {
+    while (!bytes.empty()) {
+        const ssize_t count = ::write(file.number(), bytes.data(), bytes.size());
+        if (count < 0 && errno == EINTR) continue;
+        if (count < 0) fail(path, "write", errno);
+        bytes.remove_prefix(static_cast<std::size_t>(count));
+    }
+}
+
+/// A device or a pipe takes the bytes as they come; a folder refuses to be opened.
+void write_special(const std::filesystem::path& path, std::string_view bytes) {
+    Descriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY));
+    if (file.number() < 0) fail(path, "write", errno);
+    write_all(file, bytes, path);
+    if (!file.close()) fail(path, "write", errno);
+}
+
 } // namespace
 
 std::string read_file(const std::filesystem::path& path, std::size_t max_bytes) {
@@ -104,6 +127,10 @@ std::string read_file(const std::filesystem::path& path, std::size_t max_bytes) 
 }
 
 void write_file_atomically(const std::filesystem::path& path, std::string_view bytes) {
+    if (is_special(path)) {
+        write_special(path, bytes);
+        return;
+    }
     const std::string prefix = path.string() + "." + std::to_string(::getpid()) + ".";
     int number = -1;
     std::string name;
@@ -114,12 +141,7 @@ void write_file_atomically(const std::filesystem::path& path, std::string_view b
     }
     Descriptor file(number);
     Temporary temporary(name);
-    for (std::size_t done = 0; done < bytes.size();) {
-        const ssize_t count = ::write(file.number(), bytes.data() + done, bytes.size() - done);
-        if (count < 0 && errno == EINTR) continue;
-        if (count < 0) fail(path, "write", errno);
-        done += static_cast<std::size_t>(count);
-    }
+    write_all(file, bytes, path);
     // Without this a crash could leave the new name with old or no content.
     if (::fsync(file.number()) != 0) fail(path, "write", errno);
     if (!file.close()) fail(path, "write", errno);

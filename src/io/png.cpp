@@ -1,11 +1,10 @@
 #include <raywise/io/png.hpp>
 
 #include <raywise/core/error.hpp>
-#include <raywise/io/output_file.hpp>
+#include <raywise/io/files.hpp>
 
 #include <png.h>
 
-#include <span>
 #include <string>
 
 namespace raywise {
@@ -40,7 +39,8 @@ std::vector<std::byte> encode_png(const Image& image) {
 }
 
 void write_png(const std::string& path, const Image& image) {
-    write_file(path, std::span<const std::byte>(encode_png(image)));
+    const std::vector<std::byte> bytes = encode_png(image);
+    write_file_atomically(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 } // namespace raywise

@@ -18,8 +18,8 @@ namespace raywise {
 );
 
 /// Writes the bytes under a temporary name beside `path` and renames: at any moment `path` is what
-/// it was or what it will be. Its folder must exist. Throws Error of kind io; nothing is left
-/// behind then.
+/// it was or what it will be. A device or a pipe is written directly. Its folder must exist. Throws
+/// Error of kind io; nothing is left behind then.
 void write_file_atomically(const std::filesystem::path& path, std::string_view bytes);
 
 /// The file `reference` of a document in `folder`: relative, without "..", and within the folder

@@ -13,7 +13,7 @@ namespace raywise {
 /// Error for an image without pixels.
 [[nodiscard]] std::vector<std::byte> encode_png(const Image& image);
 
-/// Writes the file whole or not at all, as `write_file` does.
+/// Writes the file whole or not at all, as `write_file_atomically` does.
 void write_png(const std::string& path, const Image& image);
 
 } // namespace raywise

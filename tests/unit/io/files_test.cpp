@@ -1,5 +1,5 @@
 // Oracle: the file system.
-#include <raywise/io/output_file.hpp>
+#include <raywise/io/files.hpp>
 
 #include <raywise/core/error.hpp>
 
@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class WriteFile : public testing::Test {
+class WriteFileAtomically : public testing::Test {
 protected:
     void SetUp() override {
         folder_ = fs::path(testing::TempDir()) /
@@ -42,7 +42,7 @@ std::string content(const std::string& path) {
 
 ErrorKind kind_of_failure(const std::string& path) {
     try {
-        write_file(path, std::string_view("text"));
+        write_file_atomically(path, std::string_view("text"));
     } catch (const Error& error) {
         return error.kind();
     }
@@ -50,28 +50,44 @@ ErrorKind kind_of_failure(const std::string& path) {
     return {};
 }
 
-TEST_F(WriteFile, ReplacesTheWholeOldFileAndLeavesNothingElse) {
-    write_file(path("a"), std::string_view("a long first text"));
-    write_file(path("a"), std::string_view("short"));
+TEST_F(WriteFileAtomically, ReplacesTheWholeOldFileAndLeavesNothingElse) {
+    write_file_atomically(path("a"), std::string_view("a long first text"));
+    write_file_atomically(path("a"), std::string_view("short"));
     EXPECT_EQ(content(path("a")), "short");
     EXPECT_EQ(count_files(), 1);
 }
 
-TEST_F(WriteFile, EmptyTextGivesAnEmptyFile) {
-    write_file(path("a"), std::string_view());
+TEST_F(WriteFileAtomically, EmptyTextGivesAnEmptyFile) {
+    write_file_atomically(path("a"), std::string_view{});
     EXPECT_EQ(fs::file_size(path("a")), 0U);
 }
 
-TEST_F(WriteFile, FullDeviceIsAnInputOutputError) {
+TEST_F(WriteFileAtomically, FullDeviceIsAnInputOutputError) {
     if (!fs::exists("/dev/full")) GTEST_SKIP();
     EXPECT_EQ(kind_of_failure("/dev/full"), ErrorKind::io);
 }
 
-TEST_F(WriteFile, MissingFolderOrAFolderInItsPlaceLeavesNothingBehind) {
+TEST_F(WriteFileAtomically, MissingFolderOrAFolderInItsPlaceLeavesNothingBehind) {
     EXPECT_EQ(kind_of_failure(path("none/a")), ErrorKind::io);
     fs::create_directory(path("folder"));
     EXPECT_EQ(kind_of_failure(path("folder")), ErrorKind::io);
     EXPECT_EQ(count_files(), 1);
+}
+
+TEST_F(WriteFileAtomically, DeviceIsWrittenToAndNotReplaced) {
+    write_file_atomically("/dev/null", std::string_view("text"));
+    EXPECT_TRUE(fs::is_character_file("/dev/null"));
+}
+
+TEST_F(WriteFileAtomically, SymbolicLinkToADeviceIsFollowed) {
+    fs::create_symlink("/dev/null", path("link"));
+    write_file_atomically(path("link"), std::string_view("text"));
+    EXPECT_TRUE(fs::is_symlink(path("link")));
+}
+
+TEST(ReadFile, RefusesWhatIsNoRegularFileWithoutWaitingForIt) {
+    for (const char* path : {"/dev/zero", "/dev", "no such file"})
+        EXPECT_THROW((void)read_file(path), Error) << path;
 }
 
 } // namespace
