@@ -1,5 +1,6 @@
 #include <raywise/build/prim_box.hpp>
 
+#include <raywise/build/split.hpp>
 #include <raywise/core/error.hpp>
 
 #include <atomic>
@@ -31,34 +32,37 @@ PrimBox prim_box(const Aabb& box, std::size_t id) {
     };
 }
 
+void check_count(std::size_t count) {
+    constexpr std::size_t most = std::numeric_limits<std::int32_t>::max();
+    if (count > most) throw Error(ErrorKind::limit, {}, nowhere(), "more than 2^31 - 1 boxes");
+}
+
 } // namespace
 
-PrimBoxes load_boxes(std::span<const Aabb> boxes, const Executor& executor) {
-    constexpr std::size_t most = std::numeric_limits<std::int32_t>::max();
-    constexpr std::size_t chunk = 1U << 14U;
-    if (boxes.size() > most)
-        throw Error(ErrorKind::limit, {}, nowhere(), "more than 2^31 - 1 boxes");
+void check_boxes(std::span<const Aabb> boxes) {
+    check_count(boxes.size());
+    for (std::size_t i = 0; i < boxes.size(); ++i)
+        if (!is_buildable(boxes[i]))
+            throw Error("box " + std::to_string(i) + " is empty, not finite or beyond +-2^60");
+}
 
+PrimBoxes load_boxes(std::span<const Aabb> boxes, const Executor& executor) {
+    check_count(boxes.size());
     PrimBoxes result{
         std::make_unique_for_overwrite<PrimBox[]>(boxes.size()),
         std::make_unique_for_overwrite<PrimBox[]>(boxes.size())
     };
-    std::atomic<bool> all_good = true;
-    executor.for_each_chunk(boxes.size(), chunk, [&](std::size_t begin, std::size_t end) {
+    std::atomic<bool> is_bad = false;
+    executor.for_each_chunk(boxes.size(), prim_chunk, [&](std::size_t begin, std::size_t end) {
         bool good = true;
         for (std::size_t i = begin; i < end; ++i) {
             good = good && is_buildable(boxes[i]);
             result.items[i] = prim_box(boxes[i], i);
         }
-        if (!good) all_good = false;
+        if (!good) is_bad = true;
     });
-    if (all_good) return result;
     // Looked for again, in order: which chunk finds its offender first depends on the threads.
-    for (std::size_t i = 0; i < boxes.size(); ++i)
-        if (!is_buildable(boxes[i]))
-            throw Error(
-                "box " + std::to_string(i) + " is empty, not finite or outside the range of +-2^60"
-            );
+    if (is_bad) check_boxes(boxes);
     return result;
 }
 

@@ -40,6 +40,9 @@ struct PrimBoxes {
 
 /// Throws Error, naming the first offender, unless every box is valid with coordinates in
 /// [-2^60, 2^60] and there are at most 2^31 - 1 of them.
+void check_boxes(std::span<const Aabb> boxes);
+
+/// The boxes as a builder wants them; throws as check_boxes does.
 [[nodiscard]] PrimBoxes load_boxes(std::span<const Aabb> boxes, const Executor& executor);
 
 } // namespace raywise

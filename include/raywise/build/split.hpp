@@ -42,6 +42,12 @@ struct PrimRange {
     }
 };
 
+/// Most primitives that halving can bring into leaves of at most `leaf_size` in `levels` levels;
+/// beyond 2^31 of no interest.
+[[nodiscard]] constexpr std::size_t capacity(std::size_t leaf_size, int levels) {
+    return leaf_size << static_cast<unsigned>(std::min(levels, 31));
+}
+
 /// Ranges of at least two chunks are worked on in chunks.
 inline constexpr std::size_t prim_chunk = 1U << 14U;
 

@@ -80,12 +80,6 @@ private:
         return !(split < params_.cost.prim * static_cast<double>(count));
     }
 
-    /// Most primitives that halving can bring to leaves from `level` on.
-    [[nodiscard]] std::size_t capacity(int level) const {
-        const int halvings = std::min(params_.max_depth - level, 31);
-        return static_cast<std::size_t>(params_.max_leaf_size) << static_cast<unsigned>(halvings);
-    }
-
     void put_leaf(const Task& task);
 
     const BinnedParams& params_;
@@ -191,8 +185,9 @@ std::optional<Halves> TopDown<M, Search>::halve(
         (!split || is_leaf_cheaper(count, split->cost.sum, mass.mass)))
         return std::nullopt;
 
+    const int levels_left = params_.max_depth - (task.level + 1);
     // A lopsided split is refused where the levels left would not do for its larger child.
-    if (split && split->cost.larger <= capacity(task.level + 1)) {
+    if (split && split->cost.larger <= capacity(params_.max_leaf_size, levels_left)) {
         partition_stable(task.range, task.range.first + split->left_count, *split, executor);
         return Halves{
             split->left_count,

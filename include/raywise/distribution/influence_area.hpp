@@ -20,8 +20,9 @@ namespace raywise {
 struct Affinity {
     double angle_deg = 8.11; ///< between the ray and the distribution's line, whichever way the ray
                              ///< runs; in [0, 90]
-    std::optional<double> distance; ///< radial areas only: affine instead when the ray's line
-                                    ///< passes within this of the eye; scene units, >= 0, finite
+    std::optional<double> distance = {
+    }; ///< radial areas only: affine instead when the ray's line
+       ///< passes within this of the eye; scene units, >= 0, finite
 };
 
 /// What InfluenceArea::parallel takes: the window is the region's shadow along the direction.
@@ -46,7 +47,7 @@ struct RadialArea {
 
 /// The plane form of [Falcone24]: an oriented box behind a rectangle.
 struct PlaneArea {
-    Vec3d point;            ///< center of the rectangle, finite
+    Vec3d point = {};       ///< center of the rectangle, finite
     Vec3d normal;           ///< the rays' direction, any nonzero length
     double half_width = 1;  ///< scene units, > 0
     double half_height = 1; ///< scene units, > 0
@@ -57,7 +58,7 @@ struct PlaneArea {
 
 /// The point form of [Falcone24]: a frustum; rays start on its near plane.
 struct PointArea {
-    Vec3d eye;             ///< finite
+    Vec3d eye = {};        ///< finite
     Vec3d direction;       ///< any nonzero length
     double fov_x_deg = 90; ///< full field of view, in (0, 180)
     double fov_y_deg = 90; ///< full field of view, in (0, 180)
@@ -71,8 +72,9 @@ struct PointArea {
 /// What InfluenceArea::measured takes.
 struct MeasuredArea {
     MeasuredParams rays;
-    std::optional<Region> region; ///< nullopt: a box around the origins, along their mean direction
-    double density = 1;           ///< > 0, finite
+    std::optional<Region> region = {
+    }; ///< nullopt: a box around the origins, along their mean direction
+    double density = 1; ///< > 0, finite
     Affinity affinity{};
 };
 

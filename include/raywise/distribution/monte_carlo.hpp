@@ -6,6 +6,7 @@
 #include <raywise/geometry/aabb.hpp>
 #include <raywise/geometry/ray.hpp>
 
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 
@@ -29,6 +30,9 @@ count_share(FunctionRef<Ray(Rng&)> draw, const Aabb& box, const MonteCarloParams
 
 /// The same for anything with `sample(Rng&)`.
 template <class Distribution>
+    requires requires(const Distribution& distribution, Rng& rng) {
+        { distribution.sample(rng) } -> std::same_as<Ray>;
+    }
 [[nodiscard]] ShareEstimate count_share(
     const Distribution& distribution,
     const Aabb& box,

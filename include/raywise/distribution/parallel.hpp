@@ -19,8 +19,8 @@ namespace raywise {
 /// The rectangle point + x right + y up, |x| <= half_width, |y| <= half_height, from which the rays
 /// run along `frame.forward`.
 struct ParallelParams {
-    Vec3d point;                    ///< center of the window, finite
-    Frame frame;                    ///< orthonormal, see frame_along
+    Vec3d point = {};               ///< center of the window, finite
+    Frame frame = {};               ///< orthonormal, see frame_along
     double half_width = 1;          ///< along frame.right, scene units, > 0, finite
     double half_height = 1;         ///< along frame.up, scene units, > 0, finite
     double start_depth = 0;         ///< rays start this far along forward from `point`; finite

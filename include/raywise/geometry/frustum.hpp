@@ -11,8 +11,8 @@ namespace raywise {
 /// The closed set of points e + x r + y u + z f with near <= z <= far, |x| <= z tan_x, |y| <= z
 /// tan_y, where (r, u, f) is the frame. near = 0 is the pyramid with its apex.
 struct Frustum {
-    Vec3d eye;
-    Frame frame;
+    Vec3d eye = {};
+    Frame frame = {};
     double tan_x = 1; ///< tangent of half the horizontal field of view, > 0, finite
     double tan_y = 1; ///< of half the vertical one
     double near = 0;  ///< >= 0

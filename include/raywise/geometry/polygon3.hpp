@@ -33,7 +33,7 @@ public:
 private:
     FixedPolygon<Vec3d> vertices_;
     Vec3d normal_;
-    Vec3d centroid_; ///< mean of the vertices, a point of the mean plane
+    Vec3d mean_; ///< of the vertices: a point of the mean plane
     friend std::optional<float> intersect(const Ray& ray, const PlanarPolygon& polygon);
 };
 

@@ -12,8 +12,8 @@ namespace raywise {
 /// need not be a unit vector; t is in units of its length. A ray that is not `is_valid` misses
 /// everything.
 struct Ray {
-    Vec3 origin;
-    Vec3 direction;
+    Vec3 origin = {};
+    Vec3 direction = {};
     float t_min = 0;
     float t_max = std::numeric_limits<float>::infinity();
     PrimId excluded =

@@ -25,8 +25,9 @@ struct GenerateParams {
 
 // Each of the following gives the same bytes on any platform for the same parameters: numbers come
 // from Rng and from +, -, *, / and sqrt alone; sines are computed here. Up is +y, units are meters,
-// the floor is at y = 0. The triangle count is within a quarter of the one asked for (or of the
-// smallest the scene can have, about 1,000). Throws Error when a parameter is out of its range.
+// the floor is at y = 0. The triangle count is within a quarter of the one asked for, or of the
+// smallest that the scene can have: about 18,000 for the courtyard, below 1,000 for the others.
+// Throws Error when a parameter is out of its range.
 
 /// A paved courtyard of 24 m x 16 m with a fountain, two-storey arcades of round arches on columns
 /// and tiled roofs: the embedded demo scene. Has a sun (directional), a lamp (point light) under
