@@ -28,34 +28,19 @@ struct EstimatedCost {
 /// Sum over the nodes of hit probability times cost. 0 for an empty tree, and for a root of measure
 /// 0: no ray gets that far. The surface measure is no probability: use `conditional` with it. With
 /// `absolute` the measure must be a probability, as those of the distributions are; the result is
-/// then the mean counted cost (`measure_real_cost`) of the distribution's own rays. O(nodes).
+/// then the mean counted cost (`measure_real_cost`) of the distribution's own rays. The tree must
+/// be valid. One evaluation per node; a measure that can be narrowed is, on the way down.
 template <HitMeasure M>
 [[nodiscard]] EstimatedCost estimate_cost(
     const Bvh& tree,
     const M& measure,
     Normalization normalization,
     const CostConstants& constants = {}
-) {
-    if (tree.is_empty()) return {};
-    double unit = 1;
-    if (normalization == Normalization::conditional) {
-        const auto root = static_cast<double>(measure(tree.root().box()));
-        if (!(root > 0)) return {};
-        unit = 1 / root;
-    }
-    EstimatedCost cost;
-    for (const Node& node : tree.nodes) {
-        const double probability = unit * static_cast<double>(measure(node.box()));
-        if (node.is_leaf()) {
-            cost.leaves += probability * constants.prim * static_cast<double>(node.count());
-        } else {
-            cost.inner += probability * 2 * constants.node;
-        }
-    }
-    return cost;
-}
+);
 
 /// |real - estimated| / estimated, a fraction; 0 when both are 0, +inf when only the estimate is.
 [[nodiscard]] double estimate_error(double real, double estimated);
 
 } // namespace raywise
+
+#include <raywise/analysis/estimated_cost.inl.hpp>
