@@ -1,0 +1,39 @@
+// One influence area's part of a comparison.
+#pragma once
+
+#include <raywise/analysis/comparison.hpp>
+
+#include <cstddef>
+#include <vector>
+
+namespace raywise::detail {
+
+struct AreaInput {
+    const Scene& scene;
+    const InfluenceArea& area;
+    std::size_t index = 0;       ///< among the areas
+    const CompareParams& params; ///< checked, baseline included
+    const Executor& executor;
+    const Progress& progress;
+};
+
+struct AreaResult {
+    AreaSummary summary;
+    std::vector<ComparisonRow> rows; ///< in the order of the variants
+};
+
+/// Builds every variant over the area's triangles, draws the area's rays, verifies, counts, times.
+[[nodiscard]] AreaResult compare_area(const AreaInput& input);
+
+/// The variant that the others are measured against.
+[[nodiscard]] Variant baseline_of(const CompareParams& params);
+
+/// How the variant's local tree, and the global one, are built.
+[[nodiscard]] Heuristic local_heuristic(Variant variant, const CompareParams& params);
+[[nodiscard]] Heuristic global_heuristic(const CompareParams& params);
+
+/// The area as the run sees it: for faithful runs, radial areas with a window emit by yaw and
+/// pitch.
+[[nodiscard]] InfluenceArea prepared(InfluenceArea area, const CompareParams& params);
+
+} // namespace raywise::detail
