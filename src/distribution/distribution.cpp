@@ -6,7 +6,8 @@ namespace raywise {
 
 static_assert(RayDistribution<UniformDistribution> && RayDistribution<ParallelDistribution>);
 static_assert(RayDistribution<RadialDistribution> && RayDistribution<MeasuredDistribution>);
-static_assert(NarrowableMeasure<ParallelMeasure> && NarrowableMeasure<MeasuredMeasure>);
+static_assert(NarrowableMeasure<ParallelMeasure> && NarrowableMeasure<RadialMeasure>);
+static_assert(NarrowableMeasure<MeasuredMeasure>);
 
 AnyMeasure measure_of(const Distribution& distribution, MeasureMode mode) {
     return std::visit(

@@ -72,6 +72,11 @@ PerspectiveWindow window_from(const RadialParams& params, Vec3d shift) {
     };
 }
 
+/// The thesis drew yaw-pitch rays but measured pinhole areas.
+Emission weighing_of(const RadialParams& params, MeasureMode mode) {
+    return mode == MeasureMode::thesis ? Emission::pinhole : params.emission;
+}
+
 bool holds(const Aabb& box, Vec3d point) {
     return view_from(box, point) == view_inside;
 }
@@ -114,17 +119,24 @@ RadialMeasure::Sight RadialMeasure::sight_from(
 ) {
     if (!params.window) return {AllAround{params.eye + shift}, weight};
     const PerspectiveWindow window = window_from(params, shift);
-    // The thesis drew yaw-pitch rays but measured pinhole areas.
-    if (params.emission == Emission::pinhole || mode == MeasureMode::thesis)
+    switch (weighing_of(params, mode)) {
+    case Emission::pinhole:
         return {PerspectiveProjection(window), weight};
-    if (params.emission == Emission::isotropic) return {SolidAngleProjection(window), weight};
+    case Emission::isotropic:
+        return {SolidAngleProjection(window), weight};
+    case Emission::yaw_pitch:
+        break;
+    }
     return {YawPitchProjection(window), weight};
 }
 
 RadialMeasure::RadialMeasure(const RadialParams& params, MeasureMode mode)
-    : eye_(params.eye), mode_(mode) {
+    : eye_(params.eye), mode_(mode), weighing_(weighing_of(params, mode)) {
     check(params);
-    if (params.window) view_.emplace(window_from(params, {}));
+    if (params.window) {
+        view_.emplace(window_from(params, {}));
+        window_sr_ = window_solid_angle_sr(params.window->tan_x, params.window->tan_y);
+    }
     std::vector<Sight> sights;
     if (params.radius == 0 || mode == MeasureMode::thesis) {
         sights.push_back(sight_from(params, {}, 1, mode));
@@ -137,12 +149,26 @@ RadialMeasure::RadialMeasure(const RadialParams& params, MeasureMode mode)
 
 float RadialMeasure::operator()(const Aabb& box) const {
     if (box.is_empty()) return 0;
+    if (inside_) return static_cast<float>(inside_share(box));
     if (mode_ == MeasureMode::thesis && holds(box, eye_)) return 0;
     double sum = 0;
     for (const Sight& sight : *sights_)
         sum += sight.weight *
                std::visit([&box](const auto& share) { return share(box); }, sight.share);
     return static_cast<float>(std::clamp(sum, 0.0, 1.0));
+}
+
+double RadialMeasure::inside_share(const Aabb& box) const {
+    if (weighing_ == Emission::pinhole) return view_->inside_share(box);
+    return std::min(solid_angle_sr(box, eye_) / window_sr_, 1.0);
+}
+
+RadialMeasure RadialMeasure::narrowed(const Aabb& box) const {
+    RadialMeasure result = *this;
+    const bool has_closed_form = view_ && weighing_ != Emission::yaw_pitch && sights_->size() == 1;
+    if (has_closed_form && view_->relation(box) == PerspectiveView::Relation::inside)
+        result.inside_ = true;
+    return result;
 }
 
 std::optional<double> RadialMeasure::shared(const Aabb& a, const Aabb& b) const {

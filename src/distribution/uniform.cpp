@@ -41,10 +41,9 @@ float exit_of(const Aabb& box, Vec3 origin, Vec3 direction) {
     double exit = std::numeric_limits<double>::infinity();
     for (int axis = 0; axis < 3; ++axis) {
         if (direction[axis] == 0) continue;
-        const double wall = direction[axis] > 0 ? box.hi[axis] : box.lo[axis];
-        exit = std::min(
-            exit, (wall - static_cast<double>(origin[axis])) / static_cast<double>(direction[axis])
-        );
+        const float wall = direction[axis] > 0 ? box.hi[axis] : box.lo[axis];
+        const double gap = static_cast<double>(wall) - static_cast<double>(origin[axis]);
+        exit = std::min(exit, gap / static_cast<double>(direction[axis]));
     }
     return std::nextafter(static_cast<float>(exit), std::numeric_limits<float>::infinity());
 }

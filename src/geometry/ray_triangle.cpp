@@ -8,10 +8,11 @@
 #include <raywise/geometry/vec.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <optional>
-#include <utility>
 
 // With a, b, c the vertices as seen from the origin and d the direction, the line meets the
 // triangle's plane at the weights U : V : W = d.(b x c) : d.(c x a) : d.(a x b), at
@@ -27,7 +28,10 @@ struct Bounded {
     double value;
     double error;
 
-    [[nodiscard]] int sure_sign() const { return value > error ? 1 : value < -error ? -1 : 0; }
+    [[nodiscard]] bool has_sure_sign() const { return std::abs(value) > error || error == 0; }
+
+    /// When it is sure.
+    [[nodiscard]] int sign() const { return value > 0 ? 1 : value < 0 ? -1 : 0; }
 };
 
 /// p . (q x r). Each product of three carries the roundings of its factors, at most three, and its
@@ -92,10 +96,6 @@ float nearest_quotient(const Expansion<N>& num, const Expansion<M>& den) {
     return static_cast<float>(middle);
 }
 
-struct Weights {
-    Bounded u, v, w;
-};
-
 /// One triangle, decided step by step; the steps after the first are rare.
 class Decision {
 public:
@@ -115,46 +115,44 @@ public:
         if (side == 0) return std::nullopt;
         const Bounded sum = weight_sum();
         const std::optional<float> t = nearest_t(sum, t_max);
-        if (!t || !(*t >= ray_.t_min && *t <= t_max)) return std::nullopt;
-        if (std::isinf(*t)) return std::nullopt;
+        if (!t || !(*t >= ray_.t_min && *t <= t_max) || std::isinf(*t)) return std::nullopt;
         const auto weight = [&](const Bounded& part) {
             return static_cast<float>(std::clamp(part.value / sum.value, 0.0, 1.0));
         };
         // Adding +0 turns -0 into +0.
-        return Hit{*t + 0.0F, weight(weights_.v), weight(weights_.w), id, side < 0};
+        return Hit{*t + 0.0F, weight(weights_[1]), weight(weights_[2]), id, side < 0};
     }
 
 private:
     /// The sign that all nonzero weights have; 0 when they differ or all are zero.
     [[nodiscard]] int common_side() {
-        const auto [least, greatest] = sign_range();
-        if (least < 0 && greatest > 0) return 0;
-        const bool all_sure = weights_.u.sure_sign() != 0 && weights_.v.sure_sign() != 0 &&
-                              weights_.w.sure_sign() != 0;
-        if (!all_sure) {
-            make_exact();
-            const auto [lower, upper] = sign_range();
-            return lower < 0 && upper > 0 ? 0 : lower + upper == 0 ? 0 : lower + upper > 0 ? 1 : -1;
+        bool has_positive = false;
+        bool has_negative = false;
+        const auto note = [&](const Bounded& weight) {
+            has_positive = has_positive || weight.sign() > 0;
+            has_negative = has_negative || weight.sign() < 0;
+        };
+        for (const Bounded& weight : weights_)
+            if (weight.has_sure_sign()) note(weight);
+        for (std::size_t i = 0; i < 3 && !(has_positive && has_negative); ++i) {
+            if (weights_[i].has_sure_sign()) continue;
+            make_exact(i);
+            note(weights_[i]);
         }
-        return greatest;
-    }
-
-    [[nodiscard]] std::pair<int, int> sign_range() const {
-        return std::minmax({weights_.u.sure_sign(), weights_.v.sure_sign(), weights_.w.sure_sign()}
-        );
+        return static_cast<int>(has_positive) - static_cast<int>(has_negative);
     }
 
     /// U + V + W, all of one sign, to better than 2^-30, so that u and v are good floats.
     [[nodiscard]] Bounded weight_sum() {
         const auto sum = [this] {
+            const auto& [u, v, w] = weights_;
+            const double value = u.value + v.value + w.value;
             return Bounded{
-                weights_.u.value + weights_.v.value + weights_.w.value,
-                (weights_.u.error + weights_.v.error + weights_.w.error) * (1 + 0x1p-50) +
-                    0x1p-51 * std::abs(weights_.u.value + weights_.v.value + weights_.w.value)
+                value, (u.error + v.error + w.error) * (1 + 0x1p-50) + 0x1p-51 * std::abs(value)
             };
         };
         if (const Bounded s = sum(); s.error <= 0x1p-30 * std::abs(s.value)) return s;
-        make_exact();
+        make_all_exact();
         return sum();
     }
 
@@ -169,36 +167,42 @@ private:
         const auto high = static_cast<float>(t + error);
         if (low == high) return low;
         if (high < ray_.t_min || low > t_max) return std::nullopt;
-        make_exact();
+        make_all_exact();
         return nearest_quotient(
-            exact_triple_product(exact_a_, exact_b_, exact_c_), exact_u_ + exact_v_ + exact_w_
+            exact_triple_product(exact_a_, exact_b_, exact_c_), exact_[0] + exact_[1] + exact_[2]
         );
     }
 
-    void make_exact() {
-        if (is_exact_) return;
-        is_exact_ = true;
-        exact_a_ = exact_difference(triangle_.v0, ray_.origin);
-        exact_b_ = exact_difference(triangle_.v1, ray_.origin);
-        exact_c_ = exact_difference(triangle_.v2, ray_.origin);
+    void make_exact(std::size_t weight) {
+        if (is_exact_[weight]) return;
+        is_exact_[weight] = true;
+        if (!has_exact_vertices_) {
+            has_exact_vertices_ = true;
+            exact_a_ = exact_difference(triangle_.v0, ray_.origin);
+            exact_b_ = exact_difference(triangle_.v1, ray_.origin);
+            exact_c_ = exact_difference(triangle_.v2, ray_.origin);
+        }
         const ExactVec d = exact_difference(ray_.direction, Vec3{});
-        exact_u_ = exact_triple_product(d, exact_b_, exact_c_);
-        exact_v_ = exact_triple_product(d, exact_c_, exact_a_);
-        exact_w_ = exact_triple_product(d, exact_a_, exact_b_);
-        const auto bounded = [](const ExactVolume& volume) {
-            const double value = volume.estimate();
-            return Bounded{value, 0x1p-51 * std::abs(value)};
-        };
-        weights_ = {bounded(exact_u_), bounded(exact_v_), bounded(exact_w_)};
+        exact_[weight] = weight == 0   ? exact_triple_product(d, exact_b_, exact_c_)
+                         : weight == 1 ? exact_triple_product(d, exact_c_, exact_a_)
+                                       : exact_triple_product(d, exact_a_, exact_b_);
+        const double value = exact_[weight].estimate();
+        weights_[weight] = {value, 0x1p-51 * std::abs(value)};
+    }
+
+    void make_all_exact() {
+        for (std::size_t i = 0; i < 3; ++i)
+            make_exact(i);
     }
 
     const Ray& ray_;
     const Triangle& triangle_;
     Vec3d a_, b_, c_;
-    Weights weights_;
-    bool is_exact_ = false;
+    std::array<Bounded, 3> weights_{}; ///< U, V, W
+    std::array<bool, 3> is_exact_{};
+    bool has_exact_vertices_ = false;
     ExactVec exact_a_, exact_b_, exact_c_;
-    ExactVolume exact_u_, exact_v_, exact_w_;
+    std::array<ExactVolume, 3> exact_;
 };
 
 } // namespace

@@ -17,16 +17,44 @@ namespace raywise {
 
 namespace {
 
-/// Signed solid angle of the triangle (a, b, c) seen from the origin. The determinant is taken of
-/// the edges, so that a small triangle far away keeps its digits. [VanOosterom83]
-double triangle_solid_angle_sr(Vec3d a, Vec3d b, Vec3d c) {
-    const double la = length(a);
-    const double lb = length(b);
-    const double lc = length(c);
-    const double determinant = dot(a, cross(b - a, c - a));
-    const double denominator = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
-    return 2 * std::atan2(determinant, denominator);
-}
+/// Solid angle of a convex polygon seen from the origin outside its plane, as a fan of triangles.
+/// Half the solid angle of each is the argument of a complex number, so that of the polygon, below
+/// pi, is the argument of their product: one arc tangent for all. Each determinant is taken of the
+/// edges, so that a small triangle far away keeps its digits. [VanOosterom83]
+class SolidAngleFan {
+public:
+    SolidAngleFan(Vec3d first, Vec3d second)
+        : first_(first)
+        , last_(second)
+        , first_length_(length(first))
+        , last_length_(length(second)) {}
+
+    void add(Vec3d corner) {
+        const double corner_length = length(corner);
+        const double scale = 1 / (first_length_ * last_length_ * corner_length);
+        const double y = scale * dot(first_, cross(last_ - first_, corner - first_));
+        const double x =
+            1 + scale * (dot(first_, last_) * corner_length + dot(last_, corner) * first_length_ +
+                         dot(corner, first_) * last_length_);
+        const double real = real_ * x - imaginary_ * y;
+        imaginary_ = real_ * y + imaginary_ * x;
+        real_ = real;
+        last_ = corner;
+        last_length_ = corner_length;
+    }
+
+    [[nodiscard]] double solid_angle_sr() const {
+        return 2 * std::abs(std::atan2(imaginary_, real_));
+    }
+
+private:
+    Vec3d first_;
+    Vec3d last_;
+    double first_length_;
+    double last_length_;
+    double real_ = 1;
+    double imaginary_ = 0;
+};
 
 Vec3d on_image_plane(Vec2d p) {
     return {p.x, p.y, 1};
@@ -153,10 +181,10 @@ double solid_angle_sr(const Aabb& box, Vec3d eye) {
     const auto corner = [&](std::size_t i) {
         return to_double(box.vertex(cycle.vertices[i])) - eye;
     };
-    double sum = 0;
-    for (std::size_t i = 1; i + 1 < cycle.size; ++i)
-        sum += triangle_solid_angle_sr(corner(0), corner(i), corner(i + 1));
-    return std::abs(sum);
+    SolidAngleFan fan(corner(0), corner(1));
+    for (std::size_t i = 2; i < cycle.size; ++i)
+        fan.add(corner(i));
+    return fan.solid_angle_sr();
 }
 
 double window_solid_angle_sr(double tan_x, double tan_y) {
@@ -166,12 +194,11 @@ double window_solid_angle_sr(double tan_x, double tan_y) {
 }
 
 double polygon_solid_angle_sr(const ConvexPolygon& polygon) {
-    double sum = 0;
-    for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
-        sum += triangle_solid_angle_sr(
-            on_image_plane(polygon[0]), on_image_plane(polygon[i]), on_image_plane(polygon[i + 1])
-        );
-    return std::abs(sum);
+    if (polygon.size() < 3) return 0;
+    SolidAngleFan fan(on_image_plane(polygon[0]), on_image_plane(polygon[1]));
+    for (std::size_t i = 2; i < polygon.size(); ++i)
+        fan.add(on_image_plane(polygon[i]));
+    return fan.solid_angle_sr();
 }
 
 double polygon_yaw_pitch_rad2(const ConvexPolygon& polygon, double pitch_limit_rad) {

@@ -1,4 +1,5 @@
-// What a hit is, in rational numbers and by formulas of its own: the oracle of the exact kernel.
+// What a hit is, in whole numbers of any length and by formulas of its own: the oracle of the exact
+// kernel.
 #pragma once
 
 #include <raywise/geometry/ray.hpp>
@@ -6,34 +7,54 @@
 
 #include <gmpxx.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <optional>
 
 namespace raywise::oracle {
 
-struct Rational3 {
-    mpq_class x, y, z;
+/// Coordinates in units of a power of two that makes them whole: no fractions to reduce.
+struct Integer3 {
+    mpz_class x, y, z;
 };
 
-inline Rational3 exact(Vec3 a) {
-    return {
-        mpq_class(static_cast<double>(a.x)),
-        mpq_class(static_cast<double>(a.y)),
-        mpq_class(static_cast<double>(a.z))
-    };
+/// The exponent of the last bit of a finite float, or more.
+inline int last_bit(float x) {
+    return x == 0 ? 1000 : std::max(std::ilogb(x) - 23, -149);
 }
 
-inline Rational3 minus(const Rational3& a, const Rational3& b) {
+inline int last_bit(Vec3 a) {
+    return std::min({last_bit(a.x), last_bit(a.y), last_bit(a.z)});
+}
+
+/// a / 2^unit.
+inline Integer3 in_units(Vec3 a, int unit) {
+    const auto whole = [&](float x) {
+        return mpz_class(std::ldexp(static_cast<double>(x), -unit));
+    };
+    return {whole(a.x), whole(a.y), whole(a.z)};
+}
+
+inline Integer3 operator-(const Integer3& a, const Integer3& b) {
     return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
 
-inline mpq_class dot(const Rational3& a, const Rational3& b) {
+inline mpz_class dot(const Integer3& a, const Integer3& b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-inline Rational3 cross(const Rational3& a, const Rational3& b) {
+inline Integer3 cross(const Integer3& a, const Integer3& b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+/// numerator / denominator * 2^exponent.
+inline mpq_class fraction(const mpz_class& numerator, const mpz_class& denominator, int exponent) {
+    mpq_class result(numerator, denominator);
+    result.canonicalize();
+    const auto shift = static_cast<mp_bitcnt_t>(std::abs(exponent));
+    return exponent >= 0 ? mpq_class(result << shift) : mpq_class(result >> shift);
 }
 
 /// The nearest float, ties to even, found by bisection of the ordered floats: slow and obvious.
@@ -71,28 +92,41 @@ inline float nearest_float(const mpq_class& x) {
 /// plane by normal equations.
 inline std::optional<Hit>
 intersect(const Ray& ray, const Triangle& triangle, PrimId id = PrimId{0}) {
-    const Rational3 o = exact(ray.origin);
-    const Rational3 d = exact(ray.direction);
-    const Rational3 v0 = exact(triangle.v0);
-    const Rational3 e1 = minus(exact(triangle.v1), v0);
-    const Rational3 e2 = minus(exact(triangle.v2), v0);
-    const Rational3 n = cross(e1, e2);
-    const mpq_class slope = dot(n, d);
+    const int unit = std::min(
+        {last_bit(ray.origin), last_bit(triangle.v0), last_bit(triangle.v1), last_bit(triangle.v2)}
+    );
+    const int direction_unit = last_bit(ray.direction);
+    const Integer3 d = in_units(ray.direction, direction_unit);
+    const Integer3 v0 = in_units(triangle.v0, unit);
+    const Integer3 from_v0 = in_units(ray.origin, unit) - v0;
+    const Integer3 e1 = in_units(triangle.v1, unit) - v0;
+    const Integer3 e2 = in_units(triangle.v2, unit) - v0;
+    const Integer3 n = cross(e1, e2);
+    const mpz_class slope = dot(n, d);
     if (slope == 0 || id == ray.excluded) return std::nullopt;
-    const mpq_class t = dot(n, minus(v0, o)) / slope;
-    const Rational3 p{o.x + t * d.x - v0.x, o.y + t * d.y - v0.y, o.z + t * d.z - v0.z};
-    const mpq_class g11 = dot(e1, e1);
-    const mpq_class g12 = dot(e1, e2);
-    const mpq_class g22 = dot(e2, e2);
-    const mpq_class p1 = dot(p, e1);
-    const mpq_class p2 = dot(p, e2);
-    const mpq_class area = g11 * g22 - g12 * g12;
-    const mpq_class u = (p1 * g22 - p2 * g12) / area;
-    const mpq_class v = (p2 * g11 - p1 * g12) / area;
-    if (u < 0 || v < 0 || u + v > 1) return std::nullopt;
-    const float rounded = nearest_float(t) + 0.0F;
-    if (!std::isfinite(rounded) || rounded < ray.t_min || rounded > ray.t_max) return std::nullopt;
-    return Hit{rounded, nearest_float(u), nearest_float(v), id, slope < 0};
+    const mpz_class rise = -dot(n, from_v0);
+    // The point less v0, times slope.
+    const Integer3 p{
+        slope * from_v0.x + rise * d.x,
+        slope * from_v0.y + rise * d.y,
+        slope * from_v0.z + rise * d.z
+    };
+    const mpz_class g11 = dot(e1, e1);
+    const mpz_class g12 = dot(e1, e2);
+    const mpz_class g22 = dot(e2, e2);
+    const mpz_class p1 = dot(p, e1);
+    const mpz_class p2 = dot(p, e2);
+    const mpz_class area = (g11 * g22 - g12 * g12) * slope; // of the sign of slope
+    const mpz_class u = p1 * g22 - p2 * g12;
+    const mpz_class v = p2 * g11 - p1 * g12;
+    const mpz_class w = area - u - v;
+    const int side = sgn(slope);
+    if (sgn(u) * side < 0 || sgn(v) * side < 0 || sgn(w) * side < 0) return std::nullopt;
+    const float t = nearest_float(fraction(rise, slope, unit - direction_unit)) + 0.0F;
+    if (!std::isfinite(t) || t < ray.t_min || t > ray.t_max) return std::nullopt;
+    return Hit{
+        t, nearest_float(fraction(u, area, 0)), nearest_float(fraction(v, area, 0)), id, side < 0
+    };
 }
 
 } // namespace raywise::oracle

@@ -3,7 +3,7 @@
 // other, and an edge meets a polytope when the half-spaces leave something of it.
 #pragma once
 
-#include "support/exact_oracle.hpp"
+#include "support/rational3.hpp"
 
 #include <raywise/geometry/aabb.hpp>
 #include <raywise/geometry/frustum.hpp>

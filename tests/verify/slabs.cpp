@@ -8,6 +8,7 @@
 #include <raywise/geometry/ray_box.hpp>
 #include <raywise/geometry/ray_triangle.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -28,21 +29,34 @@ bool is_accepted(const Ray& ray, const Aabb& box) {
 
 /// The smallest box of floats around the exact point where the ray meets the triangle's plane.
 Aabb box_of_hit_point(const Ray& ray, const Triangle& triangle) {
-    using namespace oracle;
-    const Rational3 o = exact(ray.origin);
-    const Rational3 d = exact(ray.direction);
-    const Rational3 v0 = exact(triangle.v0);
-    const Rational3 n = oracle::cross(minus(exact(triangle.v1), v0), minus(exact(triangle.v2), v0));
-    const mpq_class t = oracle::dot(n, minus(v0, o)) / oracle::dot(n, d);
+    using oracle::fraction;
+    const int unit = std::min(
+        {oracle::last_bit(ray.origin),
+         oracle::last_bit(triangle.v0),
+         oracle::last_bit(triangle.v1),
+         oracle::last_bit(triangle.v2)}
+    );
+    const int direction_unit = oracle::last_bit(ray.direction);
+    const oracle::Integer3 o = oracle::in_units(ray.origin, unit);
+    const oracle::Integer3 d = oracle::in_units(ray.direction, direction_unit);
+    const oracle::Integer3 v0 = oracle::in_units(triangle.v0, unit);
+    const oracle::Integer3 n = oracle::cross(
+        oracle::in_units(triangle.v1, unit) - v0, oracle::in_units(triangle.v2, unit) - v0
+    );
+    const mpz_class rise = oracle::dot(n, v0 - o);
+    const mpz_class slope = oracle::dot(n, d);
     const auto below = [](const mpq_class& x) {
-        const float near = nearest_float(x);
+        const float near = oracle::nearest_float(x);
         return mpq_class(static_cast<double>(near)) <= x
                    ? near
                    : std::nextafter(near, -std::numeric_limits<float>::infinity());
     };
-    const mpq_class x = o.x + t * d.x;
-    const mpq_class y = o.y + t * d.y;
-    const mpq_class z = o.z + t * d.z;
+    const auto coordinate = [&](const mpz_class& from, const mpz_class& along) {
+        return fraction(from * slope + rise * along, slope, unit);
+    };
+    const mpq_class x = coordinate(o.x, d.x);
+    const mpq_class y = coordinate(o.y, d.y);
+    const mpq_class z = coordinate(o.z, d.z);
     return {{below(x), below(y), below(z)}, {-below(-x), -below(-y), -below(-z)}};
 }
 

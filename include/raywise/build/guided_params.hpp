@@ -21,8 +21,9 @@ struct GuidedParams {
     double max_leaf_area = 0;        ///< a node of less surface area is a leaf; >= 0
     /// Corrected: most primitives of a leaf. Faithful: a node of fewer is a leaf (G8). >= 1
     std::uint32_t max_leaf_size = 2;
-    /// Mass of all rays, so that p = m / total_mass; nothing: the mass of the root. > 0
-    std::optional<double> total_mass;
+    /// Mass of all rays, so that p = m / total_mass; nothing: the mass of the root, or 1
+    /// where it has none. > 0
+    std::optional<double> total_mass = std::nullopt;
     CostConstants cost{};  ///< both finite and > 0; `node` is not used in faithful mode
     bool faithful = false; ///< reproduce G1 to G9, and so the thesis's numbers
 };

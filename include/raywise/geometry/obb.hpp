@@ -10,9 +10,9 @@ namespace raywise {
 
 /// The closed box of points whose frame coordinates relative to `center` are within ± `half`.
 struct Obb {
-    Vec3d center;
-    Frame frame;
-    Vec3d half; ///< half sizes along right, up, forward; finite, >= 0
+    Vec3d center = {};
+    Frame frame = {};
+    Vec3d half = {}; ///< half sizes along right, up, forward; finite, >= 0
 };
 
 /// Vertex i in 0..7, numbered as those of an Aabb with (right, up, forward) for (x, y, z).

@@ -14,8 +14,8 @@ namespace raywise {
 
 /// A frustum's opening, as rays leave it.
 struct PerspectiveWindow {
-    Vec3d eye;
-    Frame frame;
+    Vec3d eye = {};
+    Frame frame = {};
     double tan_x = 1; ///< tangent of half the horizontal field of view, > 0, finite
     double tan_y = 1; ///< of half the vertical one
     double near = 0;  ///< depth at which the rays start, >= 0, finite; 0: at the eye

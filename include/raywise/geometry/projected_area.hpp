@@ -15,8 +15,8 @@ namespace raywise {
 
 /// A rectangle that emits parallel rays along frame.forward.
 struct OrthographicWindow {
-    Vec3d center;
-    Frame frame;
+    Vec3d center = {};
+    Frame frame = {};
     double half_width = 1;  ///< along frame.right, > 0, finite, scene units
     double half_height = 1; ///< along frame.up, > 0, finite
 };

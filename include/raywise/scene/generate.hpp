@@ -11,9 +11,9 @@ namespace raywise {
 
 /// Independent small triangles: v0 uniform in [0, 10)^3, v1 = v0 + U[-1, 1)^3, v2 = v1 + U[-1,
 /// 1)^3, coordinates drawn in the order x, y, z from one std::mt19937 stream, each as lo + (hi -
-/// lo) * (word / 2^32) in float. `skipped` triangles are drawn and dropped first: the thesis drew
-/// Random100 = (100, 1) and went on to Random1000 = (1000, 1, 100). [Falcone24] count <=
-/// max_triangles / 3; throws Error beyond.
+/// lo) * u in double, u from two words, low first. `skipped` triangles are drawn and dropped first:
+/// the thesis drew Random100 = (100, 1) and went on to Random1000 = (1000, 1, 100). [Falcone24]
+/// count <= max_triangles / 3; throws Error beyond.
 [[nodiscard]] Scene
 generate_random_triangles(std::size_t count, std::uint32_t seed = 1, std::size_t skipped = 0);
 

@@ -143,6 +143,19 @@ TEST(RadialMeasure, SixWindowsOfACubeMakeUpAllAround) {
     }
 }
 
+TEST(RadialMeasure, NarrowedToABoxIsTheSameInsideIt) {
+    for (const Emission emission : {Emission::pinhole, Emission::isotropic, Emission::yaw_pitch}) {
+        const RadialMeasure measure({.window = window_of_fov(80, 60), .emission = emission});
+        for (std::uint64_t i = 0; i < 300; ++i) {
+            Rng rng(11, i);
+            const Aabb outer = random_box(rng, {0, 0, 3}, 3);
+            const Aabb inner = intersect(outer, random_box(rng, to_double(outer.center()), 0.5));
+            EXPECT_NEAR(measure.narrowed(outer)(inner), measure(inner), 1e-6F);
+            EXPECT_NEAR(measure.narrowed(outer)(outer), measure(outer), 1e-6F);
+        }
+    }
+}
+
 TEST(RadialMeasure, ThesisModeGivesZeroAroundTheEyeAndPinholeAreasElsewhere) {
     const RadialParams params{.window = RadialWindow{}, .emission = Emission::yaw_pitch};
     const RadialMeasure thesis(params, MeasureMode::thesis);

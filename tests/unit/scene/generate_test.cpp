@@ -22,10 +22,10 @@ TEST(GenerateRandomTriangles, NoneAreAnEmptyScene) {
 }
 
 TEST(GenerateRandomTriangles, FollowsTheStandardLibrarysDrawOnOneStream) {
-    // libstdc++ draws a float in [a, b) from one 32-bit word: the oracle where it is in use.
+    // libstdc++ draws a double in [a, b) from two 32-bit words: the oracle where it is in use.
     std::mt19937 words(1);
-    std::uniform_real_distribution<float> in_cube(0, 10);
-    std::uniform_real_distribution<float> near(-1, 1);
+    std::uniform_real_distribution<double> in_cube(0, 10);
+    std::uniform_real_distribution<double> near(-1, 1);
     const Scene first = generate_random_triangles(100, 1);
     const Scene second = generate_random_triangles(1000, 1, 100);
     for (const Scene* scene : {&first, &second})
@@ -34,7 +34,7 @@ TEST(GenerateRandomTriangles, FollowsTheStandardLibrarysDrawOnOneStream) {
             for (std::size_t k = 0; k < 3; ++k) {
                 Vec3 step;
                 for (int axis = 0; axis < 3; ++axis)
-                    step[axis] = (k == 0 ? in_cube : near)(words);
+                    step[axis] = static_cast<float>((k == 0 ? in_cube : near)(words));
                 v = v + step;
                 ASSERT_EQ(scene->vertices[i + k], v) << i;
             }

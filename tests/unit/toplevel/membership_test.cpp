@@ -1,6 +1,6 @@
 #include <raywise/toplevel/membership.hpp>
 
-#include "random_regions.hpp"
+#include "random_areas.hpp"
 
 #include <raywise/core/error.hpp>
 #include <raywise/scene/scene.hpp>
@@ -14,22 +14,8 @@
 namespace raywise {
 namespace {
 
-Scene soup_of(const std::vector<Triangle>& triangles) {
-    Scene scene;
-    for (const Triangle& t : triangles) {
-        const auto first = static_cast<std::uint32_t>(scene.vertices.size());
-        scene.vertices.insert(scene.vertices.end(), {t.v0, t.v1, t.v2});
-        scene.triangles.push_back({first, first + 1, first + 2});
-    }
-    return scene;
-}
-
-Scene random_soup(Rng& rng, std::size_t count) {
-    std::vector<Triangle> triangles;
-    for (std::size_t i = 0; i < count; ++i)
-        triangles.push_back(testing::random_triangle(rng));
-    return soup_of(triangles);
-}
+using testing::random_soup;
+using testing::soup_of;
 
 /// A point of the triangle.
 Vec3d point_in(const Triangle& t, Rng& rng) {

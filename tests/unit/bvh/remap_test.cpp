@@ -1,0 +1,25 @@
+#include <raywise/bvh/remap.hpp>
+
+#include <raywise/core/error.hpp>
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace raywise {
+namespace {
+
+TEST(RemapPrims, RenamesEverySlot) {
+    Bvh tree{{}, {PrimId{1}, PrimId{0}, PrimId{1}}};
+    remap_prims(tree, std::vector{PrimId{70}, PrimId{80}});
+    EXPECT_EQ(tree.prims, (std::vector{PrimId{80}, PrimId{70}, PrimId{80}}));
+}
+
+TEST(RemapPrims, RefusesAPrimitiveWithoutANameAndChangesNothing) {
+    Bvh tree{{}, {PrimId{0}, PrimId{1}}};
+    EXPECT_THROW(remap_prims(tree, std::vector{PrimId{70}}), Error);
+    EXPECT_EQ(tree.prims, (std::vector{PrimId{0}, PrimId{1}}));
+}
+
+} // namespace
+} // namespace raywise
