@@ -36,9 +36,22 @@ Aabb wide_bounds(const Scene& scene, double margin) {
     return wide;
 }
 
-/// Ray origins are floats: an eye between them would lie outside its own frustum's apex.
+/// Ray origins are floats: an eye between them would lie outside its own frustum's apex. Written
+/// through memory: g++ 12 takes two neighboring conversions to float and back for nothing at -O2.
 Vec3d as_origin(Vec3d eye) {
-    return to_double(to_float(eye));
+    volatile float x = static_cast<float>(eye.x);
+    volatile float y = static_cast<float>(eye.y);
+    volatile float z = static_cast<float>(eye.z);
+    return {static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)};
+}
+
+/// Lets parallel rays start `depth` inside their region: on its border the rounding of an origin
+/// puts every other ray outside.
+InfluenceArea started_at(InfluenceArea area, double depth) {
+    ParallelParams params = std::get<ParallelDistribution>(area.distribution).params();
+    params.start_depth = depth;
+    area.distribution = ParallelDistribution(params);
+    return area;
 }
 
 /// Distance along `forward` from `eye` to the farthest corner of the box.
@@ -63,9 +76,13 @@ public:
     explicit Proposal(const Aabb& box) : box_(box) {}
 
     void add_sun(const std::string& name, Vec3d direction) {
+        const Obb region = obb_around(box_, direction);
         add(name, [&](std::string unique) {
-            return InfluenceArea::parallel(
-                std::move(unique), {.direction = direction, .region = obb_around(box_, direction)}
+            return started_at(
+                InfluenceArea::parallel(
+                    std::move(unique), {.direction = direction, .region = region}
+                ),
+                1e-4 * region.half.z
             );
         });
     }
@@ -108,16 +125,18 @@ public:
         const Vec3d forward = camera.frame.forward;
         const double far = std::min(camera.far, far_end(box_, camera.eye, forward));
         if (!(far > camera.near)) return;
-        // A little behind the window too: rays start on it.
-        const double near = camera.near - 1e-3 * (far - camera.near);
+        // The region begins behind the near plane, on which the rays start.
+        const double behind = 1e-3 * (far - camera.near);
+        const double near = camera.near - behind;
         const Obb view{
             .center = camera.eye + forward * ((near + far) / 2),
             .frame = camera.frame,
             .half = {camera.half_width, camera.half_height, (far - near) / 2}
         };
         add(name, [&](std::string unique) {
-            return InfluenceArea::parallel(
-                std::move(unique), {.direction = forward, .region = view}
+            return started_at(
+                InfluenceArea::parallel(std::move(unique), {.direction = forward, .region = view}),
+                behind
             );
         });
     }
