@@ -23,8 +23,8 @@ using namespace test_support;
 
 bool is_accepted(const Ray& ray, const Aabb& box) {
     const auto limit = static_cast<double>(ray.t_max);
-    if (!WideSlab(ray)(box, WideSlab::reach(limit)).hit) return false;
-    return needs_wide_slab(ray) || Slab(ray)(box, Slab::reach(ray.t_max)).hit;
+    if (!WideSlab(ray)(box, limit).hit) return false;
+    return needs_wide_slab(ray) || Slab(ray)(box, ray.t_max).hit;
 }
 
 /// The smallest box of floats around the exact point where the ray meets the triangle's plane.

@@ -62,22 +62,21 @@ public:
             near_face(-ray.direction.z, offsetof(Aabb, lo), offsetof(Aabb, hi)) + 2 * sizeof(float);
     }
 
-    /// The largest computed entry that a hit at `t` (rounded to float) can have.
+    /// No box that holds a hit whose t, rounded to float, is at most `t` has a greater entry.
     [[nodiscard]] static Real reach(Real t) { return t * enlarge + tiny; }
 
-    /// Tests the box against [t_min, t], where `reach_of_t` is reach(t).
-    [[nodiscard]] Touch operator()(const Aabb& box, Real reach_of_t) const {
+    /// Tests the box against [t_min, limit].
+    [[nodiscard]] Touch operator()(const Aabb& box, Real limit) const {
         // A ray in a face yields 0 * inf = NaN; the comparisons keep the other operand. [Ize13]
         const Real entry = larger(
             distance(box, near_[0], 0),
             larger(distance(box, near_[1], 1), larger(distance(box, near_[2], 2), t_min_))
         );
-        constexpr Real infinity = std::numeric_limits<Real>::infinity();
         const Real exit = smaller(
             distance(box, far_[0], 0),
-            smaller(distance(box, far_[1], 1), smaller(distance(box, far_[2], 2), infinity))
+            smaller(distance(box, far_[1], 1), smaller(distance(box, far_[2], 2), limit))
         );
-        return {entry, entry <= smaller(reach(exit), reach_of_t)};
+        return {entry, entry <= reach(exit)};
     }
 
 private:

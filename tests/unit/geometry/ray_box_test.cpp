@@ -24,13 +24,13 @@ constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 /// Whether each slab test that may be used for the ray accepts the box.
 bool all_slabs_hit(const Ray& ray, const Aabb& box) {
-    const bool wide = WideSlab(ray)(box, WideSlab::reach(static_cast<double>(ray.t_max))).hit;
-    return wide && (needs_wide_slab(ray) || Slab(ray)(box, Slab::reach(ray.t_max)).hit);
+    const bool wide = WideSlab(ray)(box, static_cast<double>(ray.t_max)).hit;
+    return wide && (needs_wide_slab(ray) || Slab(ray)(box, ray.t_max).hit);
 }
 
 bool some_slab_hits(const Ray& ray, const Aabb& box) {
-    const bool wide = WideSlab(ray)(box, WideSlab::reach(static_cast<double>(ray.t_max))).hit;
-    return wide || (!needs_wide_slab(ray) && Slab(ray)(box, Slab::reach(ray.t_max)).hit);
+    const bool wide = WideSlab(ray)(box, static_cast<double>(ray.t_max)).hit;
+    return wide || (!needs_wide_slab(ray) && Slab(ray)(box, ray.t_max).hit);
 }
 
 TEST(RayBox, IntervalIsWhereTheRayIsInside) {
@@ -240,7 +240,7 @@ TEST(RayBox, TraversalEntryIsTheKeyOfOrder) {
     const Aabb box{{-1, -1, -1}, {1, 1, 1}};
     EXPECT_EQ(Slab(Ray{{-3, 0, 0}, {2, 0, 0}})(box, infinity).entry, 1);
     EXPECT_EQ(Slab(Ray{{0, 0, 0}, {2, 0, 0}, 0.25F})(box, infinity).entry, 0.25F);
-    EXPECT_EQ(WideSlab(Ray{{-3, 0, 0}, {2, 0, 0}})(box, WideSlab::reach(9)).entry, 1);
+    EXPECT_EQ(WideSlab(Ray{{-3, 0, 0}, {2, 0, 0}})(box, 9).entry, 1);
 }
 
 } // namespace
