@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <complex>
 #include <cstddef>
 #include <numbers>
 
@@ -68,57 +67,79 @@ ConvexPolygon scaled(const ConvexPolygon& polygon, double x, double y) {
     return result;
 }
 
-/// A line of the image plane, as the pitch over the yaw: tan pitch = slope sin yaw + offset cos
-/// yaw. It is the latitude of a great circle over the longitude.
-struct GreatCircle {
+/// The pitch along a line y = slope x + offset of the image plane, per unit of yaw = atan x:
+/// atan(y / sqrt(1 + x^2)) / (1 + x^2) as a function of x.
+struct PitchDensity {
+    Vec2d start; ///< a point of the line
     double slope;
-    double offset;
 
-    [[nodiscard]] double pitch(double yaw) const {
-        return std::atan(slope * std::sin(yaw) + offset * std::cos(yaw));
+    [[nodiscard]] double operator()(double x) const {
+        const double squared = 1 + x * x;
+        return std::atan((start.y + slope * (x - start.x)) / std::sqrt(squared)) / squared;
     }
 
-    /// Parameter of the largest Bernstein ellipse around [from, to] in which the pitch is analytic:
-    /// n Gauss points err like rho^(-2n). The pitch is singular where its tangent is +-i.
+    /// Parameter of the largest Bernstein ellipse around [from, to] in which the density is
+    /// analytic: n Gauss points err like rho^(-2n). It is singular where 1 + x^2 = 0 and where
+    /// 1 + x^2 + y^2 = 0.
     [[nodiscard]] double bernstein_rho(double from, double to) const {
         const double middle = (from + to) / 2;
         const double half = std::abs(to - from) / 2;
-        const double phase = std::atan2(offset, slope);
-        const std::complex<double> nearest(
-            std::remainder(middle + phase, std::numbers::pi) / half,
-            std::asinh(1 / std::hypot(slope, offset)) / half
+        const double steepness = 1 + slope * slope;
+        const double offset = start.y - slope * start.x;
+        const double real = -slope * offset / steepness;
+        const double imaginary = std::sqrt(steepness + offset * offset) / steepness;
+        const double sum = std::min(
+            sum_to_foci(-middle / half, 1 / half),
+            sum_to_foci((real - middle) / half, imaginary / half)
         );
-        const double sum = (std::abs(nearest - 1.0) + std::abs(nearest + 1.0)) / 2;
-        return sum + std::sqrt(sum * sum - 1);
+        return sum + std::sqrt(std::max(sum * sum - 1, 0.0));
+    }
+
+private:
+    /// Half the sum of the distances from (x, y) to -1 and 1.
+    static double sum_to_foci(double x, double y) {
+        return (std::sqrt((x - 1) * (x - 1) + y * y) + std::sqrt((x + 1) * (x + 1) + y * y)) / 2;
     }
 };
 
-double gauss_legendre_8(const GreatCircle& circle, double from, double to) {
-    constexpr std::array<double, 4> nodes{
-        0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363
-    };
-    constexpr std::array<double, 4> weights{
-        0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763
-    };
+/// The positive nodes of Gauss-Legendre rules of twice as many points, with their weights, and from
+/// which ellipse on a rule errs by less than 1e-9 per unit.
+struct GaussRule {
+    double least_rho;
+    std::size_t pairs;
+    std::array<double, 4> nodes;
+    std::array<double, 4> weights;
+};
+
+constexpr std::array<GaussRule, 3> gauss_rules{{
+    {260, 1, {0.5773502691896258}, {1}},
+    {16, 2, {0.3399810435848563, 0.8611363115940526}, {0.6521451548625461, 0.3478548451374538}},
+    {4,
+     4,
+     {0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363},
+     {0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763}},
+}};
+
+double integrate(const PitchDensity& density, double from, double to, const GaussRule& rule) {
     const double middle = (from + to) / 2;
     const double half = (to - from) / 2;
     double sum = 0;
-    for (std::size_t i = 0; i < nodes.size(); ++i)
-        sum += weights[i] *
-               (circle.pitch(middle - half * nodes[i]) + circle.pitch(middle + half * nodes[i]));
+    for (std::size_t i = 0; i < rule.pairs; ++i)
+        sum += rule.weights[i] *
+               (density(middle - half * rule.nodes[i]) + density(middle + half * rule.nodes[i]));
     return sum * half;
 }
 
-/// Integral of the pitch over the yaw. Halved until eight Gauss points err below 4^-16 per radian;
-/// only towards the singularity are halves halved again.
-double integrate_pitch(const GreatCircle& circle, double from, double to, int halvings = 48) {
-    constexpr double enough = 4;
+/// Halved until a rule is good enough; only towards a singularity are halves halved again.
+double integrate(const PitchDensity& density, double from, double to, int halvings = 48) {
     if (from == to) return 0;
-    if (halvings == 0 || circle.bernstein_rho(from, to) >= enough)
-        return gauss_legendre_8(circle, from, to);
+    const double rho = density.bernstein_rho(from, to);
+    for (const GaussRule& rule : gauss_rules)
+        if (rho >= rule.least_rho) return integrate(density, from, to, rule);
+    if (halvings == 0) return integrate(density, from, to, gauss_rules.back());
     const double middle = (from + to) / 2;
-    return integrate_pitch(circle, from, middle, halvings - 1) +
-           integrate_pitch(circle, middle, to, halvings - 1);
+    return integrate(density, from, middle, halvings - 1) +
+           integrate(density, middle, to, halvings - 1);
 }
 
 /// Parameters in (0, 1) at which the edge from p to q crosses |pitch| = limit, between 0 and 1 in
@@ -147,21 +168,25 @@ Cuts cut_at_pitch(Vec2d p, Vec2d q, double tan_limit) {
     return cuts;
 }
 
+/// The largest pitch that counts.
+struct PitchLimit {
+    double angle_rad;
+    double tangent;
+};
+
 /// Integral of the pitch, held within +- limit, over the yaw along the edge from p to q.
-double integrate_edge(Vec2d p, Vec2d q, double limit_rad) {
+double integrate_edge(Vec2d p, Vec2d q, const PitchLimit& limit) {
     if (p.x == q.x) return 0;
-    const double slope = (q.y - p.y) / (q.x - p.x);
-    const GreatCircle circle{slope, p.y - slope * p.x};
-    const double tan_limit = std::tan(limit_rad);
-    const Cuts cuts = cut_at_pitch(p, q, tan_limit);
+    const PitchDensity density{p, (q.y - p.y) / (q.x - p.x)};
+    const Cuts cuts = cut_at_pitch(p, q, limit.tangent);
     double sum = 0;
     for (std::size_t i = 0; i + 1 < cuts.size; ++i) {
-        const double from = std::atan(p.x + (q.x - p.x) * cuts.at[i]);
-        const double to = std::atan(p.x + (q.x - p.x) * cuts.at[i + 1]);
+        const double from = p.x + (q.x - p.x) * cuts.at[i];
+        const double to = p.x + (q.x - p.x) * cuts.at[i + 1];
         const Vec2d middle = p + (q - p) * ((cuts.at[i] + cuts.at[i + 1]) / 2);
-        const bool held = std::abs(middle.y) > tan_limit * std::hypot(1.0, middle.x);
-        sum += held ? std::copysign(limit_rad, middle.y) * (to - from)
-                    : integrate_pitch(circle, from, to);
+        const bool held = std::abs(middle.y) > limit.tangent * std::sqrt(1 + middle.x * middle.x);
+        sum += held ? std::copysign(limit.angle_rad, middle.y) * (std::atan(to) - std::atan(from))
+                    : integrate(density, from, to);
     }
     return sum;
 }
@@ -203,9 +228,10 @@ double polygon_solid_angle_sr(const ConvexPolygon& polygon) {
 
 double polygon_yaw_pitch_rad2(const ConvexPolygon& polygon, double pitch_limit_rad) {
     if (polygon.size() < 3) return 0;
+    const PitchLimit limit{pitch_limit_rad, std::tan(pitch_limit_rad)};
     double sum = 0;
     for (std::size_t i = 0; i < polygon.size(); ++i)
-        sum += integrate_edge(polygon[i], polygon.after(i), pitch_limit_rad);
+        sum += integrate_edge(polygon[i], polygon.after(i), limit);
     return std::abs(sum);
 }
 

@@ -56,7 +56,7 @@ clipped(const FixedPolygon<Point>& polygon, const Height& height) {
         const double to_height = height(to);
         // The crossing is computed from the inner end outward whichever way the edge runs, so that
         // neighbors that share the edge cut it at the same point.
-        if (from_height >= 0 && to_height < 0)
+        if (from_height > 0 && to_height < 0)
             kept.push_back(from + (to - from) * (from_height / (from_height - to_height)));
         if (from_height < 0 && to_height > 0)
             kept.push_back(to + (from - to) * (to_height / (to_height - from_height)));
