@@ -556,19 +556,6 @@ Variant baseline_of(const CompareParams& params) {
     return {Variant::Measure::surface, Variant::Axes::longest};
 }
 
-Heuristic local_heuristic(Variant variant, const CompareParams& params) {
-    Heuristic heuristic = params.heuristic;
-    heuristic.measure = variant.measure;
-    heuristic.axes = variant.axes;
-    if (!params.faithful) return heuristic;
-    heuristic.builder = BuilderKind::guided;
-    heuristic.measure_mode = MeasureMode::thesis;
-    heuristic.guided = {};
-    heuristic.guided.faithful = true;
-    heuristic.guided.quality_threshold = variant.axes == Variant::Axes::longest ? 0.99F : 0.4F;
-    return heuristic;
-}
-
 Heuristic global_heuristic(const CompareParams& params) {
     if (!params.faithful) {
         Heuristic heuristic = params.heuristic;
@@ -595,3 +582,20 @@ AreaResult compare_area(const AreaInput& input) {
 }
 
 } // namespace raywise::detail
+
+namespace raywise {
+
+Heuristic local_heuristic(Variant variant, const CompareParams& params) {
+    Heuristic heuristic = params.heuristic;
+    heuristic.measure = variant.measure;
+    heuristic.axes = variant.axes;
+    if (!params.faithful) return heuristic;
+    heuristic.builder = BuilderKind::guided;
+    heuristic.measure_mode = MeasureMode::thesis;
+    heuristic.guided = {};
+    heuristic.guided.faithful = true;
+    heuristic.guided.quality_threshold = variant.axes == Variant::Axes::longest ? 0.99F : 0.4F;
+    return heuristic;
+}
+
+} // namespace raywise

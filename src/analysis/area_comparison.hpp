@@ -28,8 +28,7 @@ struct AreaResult {
 /// The variant that the others are measured against.
 [[nodiscard]] Variant baseline_of(const CompareParams& params);
 
-/// How the variant's local tree, and the global one, are built.
-[[nodiscard]] Heuristic local_heuristic(Variant variant, const CompareParams& params);
+/// How the global tree is built.
 [[nodiscard]] Heuristic global_heuristic(const CompareParams& params);
 
 /// The area as the run sees it: for faithful runs, radial areas with a window emit by yaw and

@@ -193,6 +193,16 @@ ReportFormat report_format(std::string_view name) {
     throw Error("format '" + std::string(name) + "' is not table, csv or json");
 }
 
+void add_fact(ReportTable& table, ColumnName name, Cell value) {
+    if (table.rows.empty()) table.rows.emplace_back();
+    table.columns.push_back(std::move(name));
+    table.rows.front().push_back(std::move(value));
+}
+
+void add_count(ReportTable& table, ColumnName name, std::uint64_t value) {
+    add_fact(table, std::move(name), static_cast<std::int64_t>(value));
+}
+
 std::string to_text(const Report& report) {
     require_rectangular(report.table);
     std::string text = escaped(report.title) + "\n\n";

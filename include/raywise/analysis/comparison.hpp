@@ -57,6 +57,9 @@ struct CompareParams {
     CostConstants constants; ///< of the reported costs
 };
 
+/// How a comparison with these parameters builds the variant's local trees.
+[[nodiscard]] Heuristic local_heuristic(Variant variant, const CompareParams& params);
+
 /// The thesis's protocol: its four pairs through the guided builder with its faults, thresholds 0.4
 /// for facing and 0.99 for longest axes, 1000 rays of one seed (yaw-pitch for radial areas with a
 /// window), local triangles by vertex membership, the first local hit wins and a local miss

@@ -25,6 +25,13 @@ struct ReportTable {
     std::vector<std::vector<Cell>> rows;
 };
 
+/// Adds a column and its cell to a table of at most one row, which stands upright as text: name
+/// beside value.
+void add_fact(ReportTable& table, ColumnName name, Cell value);
+
+/// The same for a count below 2^63.
+void add_count(ReportTable& table, ColumnName name, std::uint64_t value);
+
 /// What the numbers were computed from and with: stands beside every published number.
 struct Provenance {
     std::string version;  ///< of raywise, with the commit if known
