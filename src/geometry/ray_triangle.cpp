@@ -31,7 +31,9 @@ struct Bounded {
     [[nodiscard]] bool has_sure_sign() const { return std::abs(value) > error || error == 0; }
 
     /// When it is sure.
-    [[nodiscard]] int sign() const { return value > 0 ? 1 : value < 0 ? -1 : 0; }
+    [[nodiscard]] int sign() const {
+        return static_cast<int>(value > 0) - static_cast<int>(value < 0);
+    }
 };
 
 /// p . (q x r). Each product of three carries the roundings of its factors, at most three, and its
@@ -183,9 +185,8 @@ private:
             exact_c_ = exact_difference(triangle_.v2, ray_.origin);
         }
         const ExactVec d = exact_difference(ray_.direction, Vec3{});
-        exact_[weight] = weight == 0   ? exact_triple_product(d, exact_b_, exact_c_)
-                         : weight == 1 ? exact_triple_product(d, exact_c_, exact_a_)
-                                       : exact_triple_product(d, exact_a_, exact_b_);
+        const std::array<const ExactVec*, 4> around{&exact_b_, &exact_c_, &exact_a_, &exact_b_};
+        exact_[weight] = exact_triple_product(d, *around[weight], *around[weight + 1]);
         const double value = exact_[weight].estimate();
         weights_[weight] = {value, 0x1p-51 * std::abs(value)};
     }

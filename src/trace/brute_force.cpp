@@ -2,6 +2,8 @@
 
 #include <raywise/core/ids.hpp>
 #include <raywise/geometry/ray.hpp>
+#include <raywise/geometry/ray_triangle.hpp>
+#include <raywise/geometry/triangle_view.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -19,7 +21,7 @@ std::vector<Hit> brute_force_all_hits(const TriangleView& triangles, const Ray& 
         if (const auto hit = ExactKernel::decide(ray, triangles[id], id, ray.t_max))
             hits.push_back(*hit);
     }
-    std::sort(hits.begin(), hits.end(), is_closer);
+    std::ranges::sort(hits, is_closer);
     return hits;
 }
 

@@ -1,5 +1,8 @@
 #include <raywise/trace/count_unpruned.hpp>
 
+#include <raywise/bvh/bvh.hpp>
+#include <raywise/geometry/ray.hpp>
+#include <raywise/trace/observer.hpp>
 #include <raywise/trace/traverse.hpp>
 
 #include <limits>

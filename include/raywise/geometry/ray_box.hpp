@@ -5,6 +5,7 @@
 #include <raywise/geometry/aabb.hpp>
 #include <raywise/geometry/ray.hpp>
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
@@ -92,7 +93,7 @@ private:
 
     static Real smaller(Real a, Real b) { return a < b ? a : b; }
 
-    Real distance(const Aabb& box, std::size_t face, int axis) const {
+    [[nodiscard]] Real distance(const Aabb& box, std::size_t face, int axis) const {
         float x = 0;
         std::memcpy(&x, reinterpret_cast<const std::byte*>(&box) + face, sizeof x);
         return (Real(x) - origin_[axis]) * inverse_[axis];
@@ -101,8 +102,9 @@ private:
     BasicVec3<Real> origin_;
     BasicVec3<Real> inverse_;
     Real t_min_;
-    std::size_t near_[3]; ///< byte offsets into Aabb of the faces that the ray enters by
-    std::size_t far_[3];
+    std::array<std::size_t, 3> near_{
+    }; ///< byte offsets into Aabb of the faces that the ray enters by
+    std::array<std::size_t, 3> far_{};
 };
 
 using Slab = BasicSlab<float>;

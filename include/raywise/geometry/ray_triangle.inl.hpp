@@ -30,6 +30,7 @@ inline bool ExactKernel::surely_misses(const Triangle& triangle) const {
     const float v = cx * ay - cy * ax;
     const float w = ax * by - ay * bx;
 
+    // NOLINTBEGIN(modernize-min-max-use-initializer-list): lists go through memory.
     const float depth = std::max(std::max(std::abs(az), std::abs(bz)), std::abs(cz));
     const float across = std::max(
         std::max(std::max(std::abs(ax), std::abs(ay)), std::max(std::abs(bx), std::abs(by))),
@@ -39,6 +40,7 @@ inline bool ExactKernel::surely_misses(const Triangle& triangle) const {
     const float bound = size * (24 * 0x1p-24F * across + 48 * 0x1p-48F * size) + 0x1p-120F;
     const float least = std::min(std::min(u, v), w);
     const float greatest = std::max(std::max(u, v), w);
+    // NOLINTEND(modernize-min-max-use-initializer-list)
     return least < -bound && greatest > bound && size < 0x1p62F;
 }
 

@@ -40,20 +40,24 @@ void traverse_slab(
         if (!node.is_leaf()) {
             seen.inner(current);
             seen.box_tests(2);
-            const std::size_t left = to_index(node.left());
-            const auto touch_left = slab(tree.nodes[left].box(), Real(limit));
-            const auto touch_right = slab(tree.nodes[left + 1].box(), Real(limit));
-            // Arithmetic on the answers instead of branches on them: which child is nearer is
-            // anybody's guess. The far one waits, since the near one's hit may cull it.
-            const bool right_is_nearer = touch_right.entry < touch_left.entry;
-            const bool right_first = touch_right.hit & (!touch_left.hit | right_is_nearer);
-            stack[height] = {
-                to_node(left + (right_first ? 0 : 1)),
-                right_first ? touch_left.entry : touch_right.entry
-            };
-            height += static_cast<std::size_t>(touch_left.hit & touch_right.hit);
-            current = to_node(left + (right_first ? 1 : 0));
-            if (touch_left.hit | touch_right.hit) continue;
+            const NodeId left = node.left();
+            const NodeId right = node.right();
+            const auto touch_left = slab(tree[left].box(), Real(limit));
+            const auto touch_right = slab(tree[right].box(), Real(limit));
+            // Branches on purpose: a guessed child is already being loaded while its box is still
+            // being compared, which a computed index cannot offer.
+            if (touch_left.hit && touch_right.hit) {
+                // The far child waits: the near one's hit may cull it.
+                const bool left_first = touch_left.entry <= touch_right.entry;
+                stack[height++] = left_first ? Pending{right, touch_right.entry}
+                                             : Pending{left, touch_left.entry};
+                current = left_first ? left : right;
+                continue;
+            }
+            if (touch_left.hit || touch_right.hit) {
+                current = touch_left.hit ? left : right;
+                continue;
+            }
         } else {
             seen.leaf(current);
             if (!open_leaf(node, limit)) return;

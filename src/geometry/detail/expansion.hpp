@@ -10,6 +10,7 @@ namespace raywise::detail {
 /// round-to-nearest and no contraction, and operands small and large enough that no product under-
 /// or overflows: products of up to five floats qualify.
 template <std::size_t Capacity>
+// NOLINTNEXTLINE(cppcoreguidelines-special-member-functions): a move is a copy.
 class Expansion {
 public:
     Expansion() {} // NOLINT(*-member-init,*-use-equals-default): only [0, size) is ever read
