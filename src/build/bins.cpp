@@ -28,13 +28,18 @@ Bins::Bins(int bin_count) : bin_count_(bin_count) {
 }
 
 void Bins::add(const PrimBox* items, std::size_t count, const BinGrid& grid) {
+    // Copies, since the compiler cannot know that the bins do not overlap their owner or the grid.
+    const BinGrid local = grid;
     QuadBox* boxes = this->boxes();
+    std::uint32_t* counts = counts_.data();
     for (std::size_t i = 0; i < count; ++i) {
-        const IntQuad bins = grid.bins_of(items[i]);
+        const Quad lo = items[i].lo;
+        const Quad hi = items[i].hi;
+        const IntQuad bins = local.bins_of(lo + hi);
         for (int axis = 0; axis < 3; ++axis) {
             const std::size_t place = at(bins[axis], axis);
-            ++counts_[place];
-            boxes[place].unite(items[i].lo, items[i].hi);
+            ++counts[place];
+            boxes[place].unite(lo, hi);
         }
     }
 }
@@ -75,10 +80,17 @@ void fill_bins(
 
 QuadBox bound_centroids(const PrimBox* items, std::size_t count, const Executor& executor) {
     const auto bound = [&](std::size_t begin, std::size_t end) {
-        QuadBox part;
-        for (std::size_t i = begin; i < end; ++i)
-            part.unite(items[i].centroid());
-        return part;
+        // Two accumulators: a minimum waits for the one before it.
+        QuadBox even;
+        QuadBox odd;
+        std::size_t i = begin;
+        for (; i + 1 < end; i += 2) {
+            even.unite(items[i].centroid());
+            odd.unite(items[i + 1].centroid());
+        }
+        if (i < end) even.unite(items[i].centroid());
+        even.unite(odd);
+        return even;
     };
     if (executor.threads() == 1 || count < 2 * prim_chunk) return bound(0, count);
     QuadBox result;

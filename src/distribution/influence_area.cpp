@@ -3,30 +3,14 @@
 #include "distribution/angles.hpp"
 #include "distribution/checks.hpp"
 
-#include <raywise/core/error.hpp>
 #include <raywise/core/rounding.hpp>
-#include <raywise/distribution/measured.hpp>
-#include <raywise/distribution/parallel.hpp>
-#include <raywise/distribution/radial.hpp>
-#include <raywise/geometry/aabb.hpp>
-#include <raywise/geometry/frame.hpp>
-#include <raywise/geometry/frustum.hpp>
-#include <raywise/geometry/obb.hpp>
-#include <raywise/geometry/ray.hpp>
-#include <raywise/geometry/region.hpp>
-#include <raywise/geometry/vec.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
 #include <limits>
-#include <optional>
 #include <span>
-#include <string>
 #include <utility>
-#include <variant>
-#include <vector>
 
 namespace raywise {
 
@@ -150,8 +134,7 @@ ParallelParams window_over(const Region& region, Vec3d direction, double cone_ha
 /// The frame and window in which the region appears from the apex; no window when it reaches around
 /// the apex (beyond 89 degrees off the direction to its middle).
 std::pair<Frame, std::optional<RadialWindow>> window_from(const Region& region, Vec3d apex) {
-    if (const auto* frustum = std::get_if<Frustum>(&region);
-        frustum != nullptr && frustum->eye == apex)
+    if (const auto* frustum = std::get_if<Frustum>(&region); frustum && frustum->eye == apex)
         return {frustum->frame, RadialWindow{frustum->tan_x, frustum->tan_y}};
     const auto vertices = vertices_of(region);
     Vec3d middle;
@@ -163,8 +146,8 @@ std::pair<Frame, std::optional<RadialWindow>> window_from(const Region& region, 
     const double widest = std::tan(to_radians(89));
     for (const Vec3d& at : vertices) {
         const Vec3d seen = to_frame(frame, at - apex);
-        const double reach = widest * seen.z;
-        if (seen.z <= 0 || std::abs(seen.x) > reach || std::abs(seen.y) > reach)
+        if (!(std::abs(seen.x) <= widest * seen.z && std::abs(seen.y) <= widest * seen.z) ||
+            seen.z == 0)
             return {frame, std::nullopt};
         window.tan_x = std::max(window.tan_x, std::abs(seen.x) / seen.z);
         window.tan_y = std::max(window.tan_y, std::abs(seen.y) / seen.z);

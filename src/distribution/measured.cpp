@@ -2,21 +2,14 @@
 
 #include "distribution/checks.hpp"
 
-#include <raywise/core/rng.hpp>
 #include <raywise/distribution/uniform.hpp>
-#include <raywise/geometry/aabb.hpp>
-#include <raywise/geometry/ray.hpp>
 #include <raywise/geometry/ray_box.hpp>
-#include <raywise/geometry/vec.hpp>
 
 #include <algorithm>
 #include <cstddef>
-#include <cstdint>
 #include <limits>
-#include <memory>
 #include <numeric>
 #include <utility>
-#include <vector>
 
 namespace raywise {
 
@@ -38,7 +31,7 @@ std::shared_ptr<const RayRecord> record_of(MeasuredParams params) {
         "of fewer than 2^32 rays"
     );
     require_not_negative(params.shrinkage, "the shrinkage");
-    const UniformDistribution uniform(params.bounds);
+    UniformDistribution uniform(params.bounds);
     std::vector<double> cumulative;
     cumulative.reserve(params.rays.size());
     double total = 0;
@@ -53,7 +46,7 @@ std::shared_ptr<const RayRecord> record_of(MeasuredParams params) {
     std::iota(all->begin(), all->end(), 0U);
     return std::make_shared<const RayRecord>(RayRecord{
         .params = std::move(params),
-        .uniform = uniform,
+        .uniform = std::move(uniform),
         .total = total,
         .cumulative = std::move(cumulative),
         .all = std::move(all)
@@ -108,7 +101,7 @@ const MeasuredParams& MeasuredDistribution::params() const {
 Ray MeasuredDistribution::sample(Rng& rng) const {
     const double at = rng.uniform_double() * (record_->total + record_->params.shrinkage);
     const std::vector<double>& cumulative = record_->cumulative;
-    const auto found = std::ranges::upper_bound(cumulative, at);
+    const auto found = std::upper_bound(cumulative.begin(), cumulative.end(), at);
     if (found == cumulative.end() && record_->params.shrinkage > 0)
         return record_->uniform.sample(rng);
     const auto index =

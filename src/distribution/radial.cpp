@@ -3,28 +3,16 @@
 #include "distribution/angles.hpp"
 #include "distribution/checks.hpp"
 
-#include <raywise/core/rng.hpp>
-#include <raywise/distribution/ray_distribution.hpp>
-#include <raywise/geometry/aabb.hpp>
 #include <raywise/geometry/convex_polygon.hpp>
-#include <raywise/geometry/perspective_area.hpp>
-#include <raywise/geometry/ray.hpp>
 #include <raywise/geometry/sampling.hpp>
 #include <raywise/geometry/silhouette.hpp>
-#include <raywise/geometry/solid_angle.hpp>
-#include <raywise/geometry/vec.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
 #include <limits>
-#include <memory>
 #include <numbers>
-#include <optional>
-#include <utility>
-#include <variant>
-#include <vector>
+#include <span>
 
 namespace raywise {
 
@@ -74,12 +62,12 @@ const std::array<BallNode, 13>& ball_nodes() {
     return nodes;
 }
 
-PerspectiveWindow window_from(const RadialParams& params, const RadialWindow& window, Vec3d shift) {
+PerspectiveWindow window_from(const RadialParams& params, Vec3d shift) {
     return {
         .eye = params.eye + shift,
         .frame = params.frame,
-        .tan_x = window.tan_x,
-        .tan_y = window.tan_y,
+        .tan_x = params.window->tan_x,
+        .tan_y = params.window->tan_y,
         .near = params.start_depth
     };
 }
@@ -130,7 +118,7 @@ RadialMeasure::Sight RadialMeasure::sight_from(
     MeasureMode mode
 ) {
     if (!params.window) return {AllAround{params.eye + shift}, weight};
-    const PerspectiveWindow window = window_from(params, *params.window, shift);
+    const PerspectiveWindow window = window_from(params, shift);
     switch (weighing_of(params, mode)) {
     case Emission::pinhole:
         return {PerspectiveProjection(window), weight};
@@ -146,7 +134,7 @@ RadialMeasure::RadialMeasure(const RadialParams& params, MeasureMode mode)
     : eye_(params.eye), mode_(mode), weighing_(weighing_of(params, mode)) {
     check(params);
     if (params.window) {
-        view_.emplace(window_from(params, *params.window, {}));
+        view_.emplace(window_from(params, {}));
         window_sr_ = window_solid_angle_sr(params.window->tan_x, params.window->tan_y);
     }
     std::vector<Sight> sights;
@@ -171,7 +159,6 @@ float RadialMeasure::operator()(const Aabb& box) const {
 }
 
 double RadialMeasure::inside_share(const Aabb& box) const {
-    // NOLINTNEXTLINE(bugprone-unchecked-optional-access): narrowed only when there is a window.
     if (weighing_ == Emission::pinhole) return view_->inside_share(box);
     return std::min(solid_angle_sr(box, eye_) / window_sr_, 1.0);
 }

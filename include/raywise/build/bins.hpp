@@ -4,6 +4,7 @@
 
 #include <raywise/build/prim_box.hpp>
 #include <raywise/build/quad.hpp>
+#include <raywise/build/split.hpp>
 #include <raywise/core/executor.hpp>
 
 #include <array>
@@ -28,16 +29,14 @@ public:
     [[nodiscard]] bool can_split(int axis) const { return scale_[axis] > 0; }
 
     /// min(bins - 1, floor(bins (c - lo) / (hi - lo))) in each lane; 0 where it cannot split.
-    [[nodiscard]] IntQuad bins_of(const PrimBox& item) const {
-        const Quad place = (item.centroid() - lo_) * scale_;
-        return __builtin_convertvector(min(place, last_), IntQuad);
+    [[nodiscard]] IntQuad bins_of(Quad centroid) const {
+        return __builtin_convertvector(min((centroid - lo_) * scale_, last_), IntQuad);
     }
 
-    /// One lane of bins_of, to the bit.
-    [[nodiscard]] int bin_of(const PrimBox& item, int axis) const {
-        const float centroid = item.lo[axis] + item.hi[axis];
-        const float place = (centroid - lo_[axis]) * scale_[axis];
-        return static_cast<int>(last_[axis] < place ? last_[axis] : place);
+    /// The bins below `plane`, in [1, bins - 1], on one axis.
+    [[nodiscard]] Side below(int axis, int plane) const {
+        // A bin is below a whole number exactly if the place it was rounded down from is.
+        return {axis, lo_[axis], scale_[axis], static_cast<float>(plane)};
     }
 
 private:

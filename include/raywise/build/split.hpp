@@ -26,6 +26,28 @@ struct SplitCost {
     }
 };
 
+/// The left side of a plane: (c - lo) scale < bound for a doubled centroid c on the axis. With lo 0
+/// and scale 1 the bound is a doubled centroid itself.
+struct Side {
+    int axis = 0;
+    float lo = 0;
+    float scale = 1;
+    float bound = 0;
+
+    [[nodiscard]] bool operator()(const PrimBox& item) const {
+        return (item.lo[axis] + item.hi[axis] - lo) * scale < bound;
+    }
+};
+
+/// The best split of a node.
+struct Split {
+    SplitCost cost;
+    std::size_t left_count = 0; ///< 0: none was found
+    Side is_left;
+    QuadBox left;
+    QuadBox right;
+};
+
 /// Primitives on the way from one array to the other: [first, last) of `from` goes to the same
 /// slots of `to`.
 struct PrimRange {
@@ -57,7 +79,7 @@ template <class IsLeft>
 void partition_stable(
     const PrimRange& range,
     std::size_t middle,
-    const IsLeft& is_left,
+    IsLeft is_left,
     const Executor& executor
 ) {
     const PrimBox* from = range.from + range.first;

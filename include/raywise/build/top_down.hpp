@@ -2,6 +2,7 @@
 // on, in parallel, within a bounded depth.
 #pragma once
 
+#include <raywise/build/axis_policy.hpp>
 #include <raywise/build/binned_params.hpp>
 #include <raywise/build/bins.hpp>
 #include <raywise/build/node_metric.hpp>
@@ -14,19 +15,12 @@
 #include <raywise/geometry/hit_measure.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <span>
 
 namespace raywise {
-
-/// What a search is told about a node.
-struct SearchNode {
-    const PrimBox* items = nullptr;
-    std::size_t count = 0;
-    Aabb box;
-    QuadBox centroids; ///< bounds of the doubled centroids
-};
 
 /// What is known of the two halves of a node after a split was chosen.
 struct Halves {
@@ -37,9 +31,20 @@ struct Halves {
     float right_mass = 0;
 };
 
-/// Builds top down. `Search` answers search(node, metric, executor) with an optional split that has
-/// `cost` (SplitCost) and `left_count`, tells an item's side (operator()) and the boxes
-/// (`left_box()`, `right_box()`).
+/// Runs `sweep(axis)` on the axes that the filter lets through, and on the others when no split was
+/// found there.
+template <AxisPolicy P, class Sweep>
+void try_axes(const AxisFilter<P>& filter, const Aabb& box, const Split& best, const Sweep& sweep) {
+    const std::array<bool, 3> is_wanted = wanted_axes(filter, box);
+    for (const bool wanted : {true, false}) {
+        for (int axis = 0; axis < 3; ++axis)
+            if (is_wanted[static_cast<std::size_t>(axis)] == wanted) sweep(axis);
+        if (best.left_count > 0) return;
+    }
+}
+
+/// Builds top down. `Search` answers search(range, box, measure, executor) with the best split, or
+/// nothing where no plane separates.
 template <HitMeasure M, class Search>
 class TopDown {
 public:
@@ -178,9 +183,7 @@ std::optional<Halves> TopDown<M, Search>::halve(
     const Executor& executor
 ) const {
     const std::size_t count = task.range.count();
-    const PrimBox* items = task.range.from + task.range.first;
-    const SearchNode node{items, count, task.box, bound_centroids(items, count, executor)};
-    const auto split = search_(node, metric, executor);
+    const std::optional<Split> split = search_(task.range, task.box, metric, executor);
     if (count <= params_.max_leaf_size &&
         (!split || is_leaf_cheaper(count, split->cost.sum, mass.mass)))
         return std::nullopt;
@@ -188,18 +191,21 @@ std::optional<Halves> TopDown<M, Search>::halve(
     const int levels_left = params_.max_depth - (task.level + 1);
     // A lopsided split is refused where the levels left would not do for its larger child.
     if (split && split->cost.larger <= capacity(params_.max_leaf_size, levels_left)) {
-        partition_stable(task.range, task.range.first + split->left_count, *split, executor);
+        partition_stable(
+            task.range, task.range.first + split->left_count, split->is_left, executor
+        );
         return Halves{
             split->left_count,
-            split->left_box(),
-            split->right_box(),
+            to_aabb(split->left),
+            to_aabb(split->right),
             split->cost.left_mass,
             split->cost.right_mass
         };
     }
     const std::size_t left_count = count / 2;
     const std::size_t middle = task.range.first + left_count;
-    const int axis = dominant_axis(to_vec(node.centroids.hi - node.centroids.lo));
+    const QuadBox centroids = bound_centroids(task.range.from + task.range.first, count, executor);
+    const int axis = dominant_axis(to_vec(centroids.hi - centroids.lo));
     partition_stable(task.range, middle, MedianSplit(task.range, middle, axis), executor);
     const PrimRange left_range = task.range.arrived(task.range.first, middle);
     const PrimRange right_range = task.range.arrived(middle, task.range.last);

@@ -20,9 +20,9 @@ namespace raywise {
 struct Affinity {
     double angle_deg = 8.11; ///< between the ray and the distribution's line, whichever way the ray
                              ///< runs; in [0, 90]
-    /// Radial areas only: affine instead when the ray's line passes within this of the eye; scene
-    /// units, >= 0, finite.
-    std::optional<double> distance = std::nullopt;
+    std::optional<double> distance = {
+    }; ///< radial areas only: affine instead when the ray's line
+       ///< passes within this of the eye; scene units, >= 0, finite
 };
 
 /// What InfluenceArea::parallel takes: the window is the region's shadow along the direction.
@@ -72,8 +72,8 @@ struct PointArea {
 /// What InfluenceArea::measured takes.
 struct MeasuredArea {
     MeasuredParams rays;
-    /// nullopt: a box around the origins, along their mean direction.
-    std::optional<Region> region = std::nullopt;
+    std::optional<Region> region = {
+    }; ///< nullopt: a box around the origins, along their mean direction
     double density = 1; ///< > 0, finite
     Affinity affinity{};
 };

@@ -39,9 +39,9 @@ struct RadialWindow {
 [[nodiscard]] RadialWindow window_of_fov(double fov_x_deg, double fov_y_deg);
 
 struct RadialParams {
-    Vec3d eye = {};                                    ///< finite
-    Frame frame = {};                                  ///< orthonormal, see frame_along
-    std::optional<RadialWindow> window = std::nullopt; ///< nullopt: all directions (isotropic only)
+    Vec3d eye = {};                          ///< finite
+    Frame frame = {};                        ///< orthonormal, see frame_along
+    std::optional<RadialWindow> window = {}; ///< nullopt: all directions (isotropic only)
     Emission emission = Emission::pinhole;
     double start_depth = 0; ///< rays start at this depth along forward; 0: at the eye; >= 0,
                             ///< finite; 0 when there is no window

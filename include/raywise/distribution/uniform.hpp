@@ -47,7 +47,7 @@ public:
     [[nodiscard]] UniformMeasure measure() const { return UniformMeasure(bounds_); }
 
     /// Uniform lines face all axes alike: (1, 1, 1).
-    [[nodiscard]] static Vec3d direction_at(const Aabb& box);
+    [[nodiscard]] Vec3d direction_at(const Aabb& box) const;
 
 private:
     Aabb bounds_;

@@ -168,14 +168,16 @@ TEST(BuildBinned, CostIsCloseToTheSweeps) {
 }
 
 TEST(BuildBinned, TiesGoToTheBalancedSplitOnTheLowestAxis) {
-    // Every split costs the same; x and y would order the boxes oppositely.
-    const std::vector<Aabb> boxes = series(8, [](float i) { return cube({i, -i, i}, 0.1F); });
-    const Bvh tree = build_binned(boxes, ConstantMeasure{}, {.max_leaf_size = 1});
-    EXPECT_EQ(measure_tree(tree).max_depth, 3);
-    Aabb left;
-    for (std::size_t i = 0; i < 4; ++i)
-        left = unite(left, boxes[i]);
-    EXPECT_EQ(tree[tree.root().left()].box(), left);
+    // Every split costs the same; x and y would order the boxes oppositely. Few are swept, many
+    // binned.
+    for (const std::size_t count : {4U, 64U}) {
+        const auto boxes = series(count, [](float i) { return cube({i, -i, i}, 0.1F); });
+        const Bvh tree = build_binned(boxes, ConstantMeasure{}, {.max_leaf_size = 1});
+        Aabb left;
+        for (std::size_t i = 0; i < count / 2; ++i)
+            left = unite(left, boxes[i]);
+        EXPECT_EQ(tree[tree.root().left()].box(), left) << count;
+    }
 }
 
 TEST(BuildBinned, SmallLeafIsKeptWhenNoSplitIsCheaper) {
