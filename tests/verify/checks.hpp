@@ -31,6 +31,9 @@ struct Outcome {
 /// No slab test refuses a box that holds an exact hit.
 [[nodiscard]] Outcome check_slabs(const Options& options);
 
+/// The accelerator with random influence areas against one plain tree.
+[[nodiscard]] Outcome check_areas(const Options& options);
+
 /// Runs `scene(index)` for indices 0, 1, ... in parallel until its outcomes sum up to
 /// `options.rays`. Every index is one scene with a random stream of its own, so a failure can be
 /// repeated whatever the number of threads.

@@ -25,6 +25,7 @@ constexpr std::array checks{
     Check{"hits", raywise::verify::check_hits},
     Check{"leaks", raywise::verify::check_leaks},
     Check{"slabs", raywise::verify::check_slabs},
+    Check{"areas", raywise::verify::check_areas},
 };
 
 struct Request {

@@ -1,6 +1,6 @@
 #include <raywise/toplevel/accelerator.hpp>
 
-#include "random_areas.hpp"
+#include "support/random_areas.hpp"
 
 #include <raywise/core/error.hpp>
 #include <raywise/trace/all_hits.hpp>
@@ -18,10 +18,10 @@
 namespace raywise {
 namespace {
 
-using testing::random_areas;
-using testing::random_ray;
-using testing::random_soup;
-using testing::soup_of;
+using test_support::random_areas;
+using test_support::random_ray;
+using test_support::random_soup;
+using test_support::soup_of;
 
 /// The oracle: one plain tree over everything.
 struct PlainTree {

@@ -1,6 +1,6 @@
 #include <raywise/toplevel/build_tree.hpp>
 
-#include "random_areas.hpp"
+#include "support/random_areas.hpp"
 
 #include <raywise/bvh/validate.hpp>
 #include <raywise/core/error.hpp>
@@ -16,7 +16,7 @@
 namespace raywise {
 namespace {
 
-using testing::random_soup;
+using test_support::random_soup;
 
 constexpr std::array
     measures{MeasureKind::surface, MeasureKind::area, MeasureKind::mixed, MeasureKind::counted};
@@ -27,7 +27,7 @@ std::vector<Distribution> one_of_each_kind(Rng& rng) {
     const Region region = Obb{{0, 0, 0}, frame_along({1, 2, 3}), {5, 5, 5}};
     std::vector<Distribution> all;
     for (std::size_t kind = 0; kind < std::variant_size_v<Distribution>;) {
-        Distribution next = testing::random_distribution(rng, region);
+        Distribution next = test_support::random_distribution(rng, region);
         if (next.index() != kind) continue;
         all.push_back(std::move(next));
         ++kind;
@@ -47,7 +47,7 @@ TEST(BuildTree, EveryPairOfHeuristicsMakesAValidTreeThatAnswersLikeBruteForce) {
     const auto distributions = one_of_each_kind(rng);
     std::vector<Ray> rays;
     for (int i = 0; i < 60; ++i)
-        rays.push_back(testing::random_ray(rng, scene, {}));
+        rays.push_back(test_support::random_ray(rng, scene, {}));
     for (const Distribution& distribution : distributions) {
         for (const auto measure : measures) {
             for (const auto axis : axes) {
@@ -157,7 +157,8 @@ TEST(BuildTree, IsTheSameForAnyNumberOfThreads) {
 
 TEST(BuildInput, HasTheBoxesAndMeansOfTheListedTriangles) {
     const Scene scene =
-        testing::soup_of({{{0, 0, 0}, {3, 0, 0}, {0, 6, 9}}, {{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}});
+        test_support::soup_of({{{0, 0, 0}, {3, 0, 0}, {0, 6, 9}}, {{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}}
+        );
     const BuildInput all = build_input_of(scene.view());
     ASSERT_EQ(all.boxes.size(), 2U);
     EXPECT_EQ(all.boxes[0], (Aabb{{0, 0, 0}, {3, 6, 9}}));

@@ -1,6 +1,6 @@
 #include <raywise/toplevel/membership.hpp>
 
-#include "random_areas.hpp"
+#include "support/random_areas.hpp"
 
 #include <raywise/core/error.hpp>
 #include <raywise/scene/scene.hpp>
@@ -14,8 +14,8 @@
 namespace raywise {
 namespace {
 
-using testing::random_soup;
-using testing::soup_of;
+using test_support::random_soup;
+using test_support::soup_of;
 
 /// A point of the triangle.
 Vec3d point_in(const Triangle& t, Rng& rng) {
@@ -32,7 +32,7 @@ TEST(MembersOf, HoldsEveryTriangleWithAPointInTheRegion) {
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
         Rng rng(21, seed);
         const Scene scene = random_soup(rng, 100);
-        const Region region = testing::random_region(rng);
+        const Region region = test_support::random_region(rng);
         const auto members = members_of(scene.view(), region);
         ASSERT_TRUE(std::is_sorted(members.begin(), members.end()));
         for (std::size_t i = 0; i < scene.triangles.size(); ++i) {
@@ -99,7 +99,7 @@ TEST(MembersOf, TrianglesWithoutAreaAndWithoutNumbersAreDropped) {
 TEST(MembersOf, DoesNotDependOnTheThreads) {
     Rng rng(23);
     const Scene scene = random_soup(rng, 20'000);
-    const Region region = testing::random_frustum(rng);
+    const Region region = test_support::random_frustum(rng);
     const Executor four(4);
     EXPECT_EQ(members_of(scene.view(), region, {}, four), members_of(scene.view(), region));
 }

@@ -1,6 +1,6 @@
 #include <raywise/toplevel/propose_areas.hpp>
 
-#include "random_areas.hpp"
+#include "support/random_areas.hpp"
 
 #include <raywise/core/error.hpp>
 #include <raywise/scene/generate.hpp>
@@ -161,7 +161,7 @@ TEST(ProposeAreas, WhatCannotReachTheSceneIsLeftOut) {
 TEST(ProposeAreas, ASceneWithoutLightsHasADefaultSetForAnyUp) {
     Rng rng(62);
     for (const Scene& scene :
-         {room(), testing::random_soup(rng, 300), generate_random_triangles(100)}) {
+         {room(), test_support::random_soup(rng, 300), generate_random_triangles(100)}) {
         for (const Vec3d up : {Vec3d{0, 1, 0}, Vec3d{0, 0, 5}, Vec3d{-1, 0, 0}}) {
             const auto areas = propose_areas(scene, {.up = up});
             ASSERT_EQ(areas.size(), 3U);
@@ -207,9 +207,9 @@ TEST(ProposeAreas, IsDeterministicAndTheSeedMovesTheLamp) {
 }
 
 TEST(ProposeAreas, FlatScenesAndPointsHaveAreasToo) {
-    Scene flat = testing::soup_of({{{-1, 0, -1}, {1, 0, -1}, {0, 0, 1}}});
-    Scene point = testing::soup_of({{{5, 5, 5}, {5, 5, 5}, {5, 5, 5}}});
-    Scene far_away = testing::soup_of({{{1e9F, 0, 0}, {1e9F, 1, 0}, {1e9F, 0, 1}}});
+    Scene flat = test_support::soup_of({{{-1, 0, -1}, {1, 0, -1}, {0, 0, 1}}});
+    Scene point = test_support::soup_of({{{5, 5, 5}, {5, 5, 5}, {5, 5, 5}}});
+    Scene far_away = test_support::soup_of({{{1e9F, 0, 0}, {1e9F, 1, 0}, {1e9F, 0, 1}}});
     for (const Scene& scene : {flat, point, far_away}) {
         const auto areas = propose_areas(scene, {.margin = 0});
         ASSERT_EQ(areas.size(), 3U);

@@ -1,6 +1,6 @@
 #include <raywise/toplevel/region_index.hpp>
 
-#include "random_regions.hpp"
+#include "support/random_regions.hpp"
 
 #include <raywise/core/error.hpp>
 
@@ -39,10 +39,10 @@ std::vector<Vec3> probes(const std::vector<Region>& regions, Rng& rng) {
         all = unite(all, bounds(region));
     std::vector<Vec3> points;
     for (int i = 0; i < 300; ++i)
-        points.push_back(to_float(testing::random_point(rng, -9, 9)));
+        points.push_back(to_float(test_support::random_point(rng, -9, 9)));
     // The center planes of the first three levels, in every combination, and the root's faces.
     for (int i = 0; i < 300; ++i) {
-        Vec3 p = to_float(testing::random_point(rng, -9, 9));
+        Vec3 p = to_float(test_support::random_point(rng, -9, 9));
         for (int axis = 0; axis < 3; ++axis) {
             const auto part = static_cast<float>(rng.below(9)) / 8;
             if (rng.below(2) == 0) p[axis] = all.lo[axis] * (1 - part) + all.hi[axis] * part;
@@ -68,7 +68,7 @@ std::vector<Vec3> probes(const std::vector<Region>& regions, Rng& rng) {
 TEST(RegionIndex, AllKindsAgreeWithAskingEveryRegion) {
     for (std::uint64_t seed = 0; seed < 40; ++seed) {
         Rng rng(7, seed);
-        const auto regions = testing::random_regions(rng, 1 + rng.below(20));
+        const auto regions = test_support::random_regions(rng, 1 + rng.below(20));
         const RegionList list(regions);
         const RegionBvh bvh(regions);
         std::vector<RegionOctree> octrees;
@@ -91,10 +91,10 @@ TEST(RegionIndex, AgreesFarFromTheOriginAndAtAnyScale) {
     for (std::uint64_t seed = 0; seed < 30; ++seed) {
         Rng rng(8, seed);
         const double scale = std::exp2(rng.uniform(-40, 40));
-        const Vec3d away = testing::random_direction(rng) * (scale * 1000);
+        const Vec3d away = test_support::random_direction(rng) * (scale * 1000);
         std::vector<Region> regions;
         for (int i = 0; i < 6; ++i) {
-            Obb box = testing::random_obb(rng);
+            Obb box = test_support::random_obb(rng);
             box.center = box.center * scale + away;
             box.half = box.half * scale;
             regions.emplace_back(box);
@@ -102,7 +102,7 @@ TEST(RegionIndex, AgreesFarFromTheOriginAndAtAnyScale) {
         const RegionOctree octree(regions);
         const RegionBvh bvh(regions);
         for (int i = 0; i < 500; ++i) {
-            const Vec3 point = to_float(testing::random_point(rng, -8, 8) * scale + away);
+            const Vec3 point = to_float(test_support::random_point(rng, -8, 8) * scale + away);
             const Areas expected = brute_force(regions, point);
             ASSERT_EQ(areas_at(octree, point), expected) << "seed " << seed;
             ASSERT_EQ(areas_at(bvh, point), expected) << "seed " << seed;
@@ -149,15 +149,16 @@ TEST(RegionIndex, FlatRegionsAndPointsContainThemselves) {
 TEST(RegionIndex, ChoosesAListForFewAndATreeForMany) {
     Rng rng(9);
     EXPECT_TRUE(
-        std::holds_alternative<RegionList>(build_region_index(testing::random_regions(rng, 8)))
+        std::holds_alternative<RegionList>(build_region_index(test_support::random_regions(rng, 8)))
     );
-    EXPECT_TRUE(std::holds_alternative<RegionBvh>(build_region_index(testing::random_regions(rng, 9)
-    )));
+    EXPECT_TRUE(
+        std::holds_alternative<RegionBvh>(build_region_index(test_support::random_regions(rng, 9)))
+    );
 }
 
 TEST(RegionOctree, OverTakesMoreAndUnderFewerThanTheTruth) {
     Rng rng(10);
-    const auto regions = testing::random_regions(rng, 12);
+    const auto regions = test_support::random_regions(rng, 12);
     const RegionOctree over(regions, {.max_level = 4, .mode = OctreeMode::over});
     const RegionOctree under(regions, {.max_level = 4, .mode = OctreeMode::under});
     std::size_t extra = 0;
@@ -219,7 +220,7 @@ TEST(RegionOctree, FullTreesHaveTheCorrectedNumberOfNodes) {
 TEST(RegionOctree, FinerCellsComeCloserToTheRegions) {
     Rng rng(11);
     const std::vector<Region> regions{
-        testing::random_frustum(rng), Obb{{0, 0, 0}, frame_along({1, 2, 3}), {2, 1, 3}}
+        test_support::random_frustum(rng), Obb{{0, 0, 0}, frame_along({1, 2, 3}), {2, 1, 3}}
     };
     double before = std::numeric_limits<double>::infinity();
     double below = -2;

@@ -1,7 +1,7 @@
 // Random influence areas of all kinds, soups of triangles, and rays that try them hard.
 #pragma once
 
-#include "random_regions.hpp"
+#include "support/random_regions.hpp"
 
 #include <raywise/core/error.hpp>
 #include <raywise/distribution/influence_area.hpp>
@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace raywise::testing {
+namespace raywise::test_support {
 
 inline Scene soup_of(const std::vector<Triangle>& triangles) {
     Scene scene;
@@ -142,4 +142,4 @@ inline Ray random_ray(Rng& rng, const Scene& scene, const std::vector<InfluenceA
     return ray;
 }
 
-} // namespace raywise::testing
+} // namespace raywise::test_support

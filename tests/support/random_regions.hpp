@@ -1,4 +1,4 @@
-// Random and degenerate regions, points and triangles for the tests of this layer.
+// Random and degenerate regions, points and triangles.
 #pragma once
 
 #include <raywise/core/rng.hpp>
@@ -9,7 +9,7 @@
 #include <cmath>
 #include <vector>
 
-namespace raywise::testing {
+namespace raywise::test_support {
 
 inline Vec3d random_point(Rng& rng, double lo, double hi) {
     const double x = rng.uniform(lo, hi);
@@ -90,4 +90,4 @@ inline Triangle random_triangle(Rng& rng) {
     }
 }
 
-} // namespace raywise::testing
+} // namespace raywise::test_support
