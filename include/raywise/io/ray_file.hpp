@@ -1,6 +1,7 @@
 // Sets of rays and hits in files that numpy reads: rays as .npy, hits as .npz.
 #pragma once
 
+#include <raywise/distribution/measured.hpp>
 #include <raywise/geometry/ray.hpp>
 
 #include <filesystem>
@@ -19,6 +20,13 @@ namespace raywise {
 /// Writes rays as .npy, shape (N, 8), float32, little-endian, in one step. `excluded` is not
 /// stored. Throws Error when the file cannot be written.
 void save_rays(const std::filesystem::path& path, std::span<const Ray> rays);
+
+/// Rays with weights, for a measured distribution: as load_rays; of an .npz the member `weights`,
+/// of shape (N), too. Weights are finite and >= 0, and 1 where there are none.
+[[nodiscard]] std::vector<RecordedRay> load_recorded_rays(const std::filesystem::path& path);
+
+/// Writes rays and weights as .npz (members stored): `rays` float32, `weights` float64.
+void save_recorded_rays(const std::filesystem::path& path, std::span<const RecordedRay> rays);
 
 /// Writes one row per ray as .npz (members stored): t float32, prim uint32, u and v float32, front
 /// bool. A miss is t = +inf, prim = 0xFFFFFFFF and zeros.

@@ -14,8 +14,10 @@ namespace raywise::testing_io {
 class ScratchFolder {
 public:
     ScratchFolder() {
-        std::string pattern =
-            (std::filesystem::temp_directory_path() / "raywise-test-XXXXXX").string();
+        // In memory where the system offers it: some tests write thousands of files.
+        std::filesystem::path base = "/dev/shm";
+        if (::access(base.c_str(), W_OK | X_OK) != 0) base = std::filesystem::temp_directory_path();
+        std::string pattern = (base / "raywise-test-XXXXXX").string();
         if (::mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no temporary folder");
         path_ = pattern;
     }

@@ -1,9 +1,0 @@
-#include "scene_reader.hpp"
-
-namespace raywise::io_detail {
-
-void read_glb(SceneReader& reader) {
-    reader.refuse(nowhere(), "this format is not read yet");
-}
-
-} // namespace raywise::io_detail
