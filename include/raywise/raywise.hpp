@@ -14,9 +14,11 @@
 #include <raywise/build/binned.hpp>                  // IWYU pragma: export
 #include <raywise/build/binned_params.hpp>           // IWYU pragma: export
 #include <raywise/build/bins.hpp>                    // IWYU pragma: export
+#include <raywise/build/few_ranks.hpp>               // IWYU pragma: export
 #include <raywise/build/guided.hpp>                  // IWYU pragma: export
 #include <raywise/build/guided_params.hpp>           // IWYU pragma: export
 #include <raywise/build/node_metric.hpp>             // IWYU pragma: export
+#include <raywise/build/ordered_sweep.hpp>           // IWYU pragma: export
 #include <raywise/build/plane_scan.hpp>              // IWYU pragma: export
 #include <raywise/build/prim_box.hpp>                // IWYU pragma: export
 #include <raywise/build/quad.hpp>                    // IWYU pragma: export
