@@ -10,9 +10,9 @@
 #include <raywise/core/executor.hpp>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <vector>
 
@@ -40,7 +40,7 @@ public:
 
 private:
     /// The largest float stands for "not known", as in the thesis's code.
-    static constexpr double unknown = std::numeric_limits<float>::max();
+    static constexpr double unknown = static_cast<double>(std::numeric_limits<float>::max());
 
     struct Task {
         std::size_t first = 0; ///< slots [first, last) of the primitives
@@ -264,12 +264,17 @@ bool GuidedBuild<M, P>::is_leaf_cheaper(std::size_t count, const Candidate& best
 
 template <HitMeasure M, AxisPolicy P>
 std::size_t GuidedBuild<M, P>::divide(const Task& task, const Candidate& best) {
-    const auto first = prims_.begin() + static_cast<std::ptrdiff_t>(task.first);
-    const auto last = prims_.begin() + static_cast<std::ptrdiff_t>(task.last);
-    const auto middle = std::stable_partition(first, last, [&](PrimId prim) {
-        return centroids_[to_index(prim)][best.axis] < best.plane;
-    });
-    return static_cast<std::size_t>(middle - prims_.begin());
+    std::vector<PrimId> right;
+    std::size_t middle = task.first;
+    for (std::size_t slot = task.first; slot < task.last; ++slot) {
+        const PrimId prim = prims_[slot];
+        if (centroids_[to_index(prim)][best.axis] < best.plane)
+            prims_[middle++] = prim;
+        else
+            right.push_back(prim);
+    }
+    std::copy(right.begin(), right.end(), prims_.begin() + static_cast<std::ptrdiff_t>(middle));
+    return middle;
 }
 
 /// The median of the centroids on their longest axis, ties by id.
