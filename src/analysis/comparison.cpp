@@ -200,28 +200,28 @@ CompareParams faithful_params() {
 std::string verdict_text(const Comparison& comparison, std::size_t area) {
     const AreaSummary& summary = comparison.areas.at(area);
     const ComparisonRow& winner = comparison.rows.at(summary.winner);
-    const bool timed = comparison.params.repeats > 0;
-    const ConfidenceInterval ratio = timed ? winner.full_ns_ratio : winner.full_ratio;
-    std::array<char, 64> figure{};
-    std::snprintf(figure.data(), figure.size(), "%.3f", ratio.mean);
-    std::string share = figure.data();
-    if (std::isfinite(ratio.half_width)) {
+    const auto share = [](ConfidenceInterval ratio) {
+        std::array<char, 64> figure{};
+        std::snprintf(figure.data(), figure.size(), "%.3f", ratio.mean);
+        std::string text = figure.data();
+        if (!std::isfinite(ratio.half_width)) return text;
         std::snprintf(figure.data(), figure.size(), " +- %.3f", ratio.half_width);
-        share += figure.data();
-    }
-    const std::string unit = timed ? "time" : "cost";
+        return text + figure.data();
+    };
+    std::string takes = "takes " + share(winner.full_ratio) + " of the cost";
+    if (comparison.params.repeats > 0)
+        takes += " and " + share(winner.full_ns_ratio) + " of the time";
+    takes += " of the global BVH alone";
     const std::string name = name_of(winner.variant);
-    const std::string takes =
-        name + " takes " + share + " of the " + unit + " of the global BVH alone";
     switch (summary.verdict) {
     case AreaSummary::Verdict::local_structure:
-        return "use " + name + ": " + takes;
+        return "use " + name + ": it " + takes;
     case AreaSummary::Verdict::global_tree:
-        return "use the global BVH: at best, " + takes;
+        return "use the global BVH: the best, " + name + ", " + takes;
     case AreaSummary::Verdict::no_difference:
         break;
     }
-    return "use the global BVH, for there is no clear difference: at best, " + takes;
+    return "use the global BVH, there is no clear difference: the best, " + name + ", " + takes;
 }
 
 Comparison compare(

@@ -46,7 +46,7 @@ PairMass pair_mass(const ParallelMeasure& measure, Culling culling, const Aabb& 
     if (culling == Culling::unculled) {
         return {measure.unculled(a), measure.unculled(b), measure.unculled_shared(a, b)};
     }
-    return {measure(a), measure(b), measure.shared(a, b)};
+    return {static_cast<double>(measure(a)), static_cast<double>(measure(b)), measure.shared(a, b)};
 }
 
 PairMass pair_mass(const RadialMeasure& measure, Culling culling, const Aabb& a, const Aabb& b) {
@@ -55,7 +55,11 @@ PairMass pair_mass(const RadialMeasure& measure, Culling culling, const Aabb& a,
         if (!shared) return {};
         return {measure.unculled(a), measure.unculled(b), *shared};
     }
-    return {measure(a), measure(b), measure.shared(a, b).value_or(0)};
+    return {
+        static_cast<double>(measure(a)),
+        static_cast<double>(measure(b)),
+        measure.shared(a, b).value_or(0)
+    };
 }
 
 template <class M>

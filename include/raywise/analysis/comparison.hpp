@@ -141,8 +141,8 @@ struct AreaSummary {
     ConfidenceInterval global_real_cost; ///< counted, unordered, unpruned
     ConfidenceInterval global_ns;        ///< 0 without timing
     std::uint64_t checked_by_brute_force = 0; ///< rays
-    std::size_t winner =
-        0; ///< index into Comparison::rows of the least full cost (time, when timed)
+    std::size_t winner = 0; ///< index into Comparison::rows of the least full_ratio: by counts
+    /// By the winner's full_ns_ratio when timed, else by its full_ratio.
     Verdict verdict = Verdict::global_tree;
 };
 
