@@ -11,6 +11,10 @@ function(raywise_options target)
     set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
     # Contracting a*b+c would make the bytes of a tree depend on the compiler and the instruction set.
     target_compile_options(${target} PRIVATE -ffp-contract=off)
+    # g++ 12's superword vectorizer drops the rounding of double -> float -> double when it packs two of them.
+    if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+        target_compile_options(${target} PRIVATE -fno-tree-slp-vectorize)
+    endif()
     if(PROJECT_IS_TOP_LEVEL)
         target_compile_options(${target} PRIVATE ${RAYWISE_WARNINGS})
         if(RAYWISE_WERROR)
