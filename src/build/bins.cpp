@@ -78,29 +78,4 @@ void fill_bins(
     });
 }
 
-QuadBox bound_centroids(const PrimBox* items, std::size_t count, const Executor& executor) {
-    const auto bound = [&](std::size_t begin, std::size_t end) {
-        // Two accumulators: a minimum waits for the one before it.
-        QuadBox even;
-        QuadBox odd;
-        std::size_t i = begin;
-        for (; i + 1 < end; i += 2) {
-            even.unite(items[i].centroid());
-            odd.unite(items[i + 1].centroid());
-        }
-        if (i < end) even.unite(items[i].centroid());
-        even.unite(odd);
-        return even;
-    };
-    if (executor.threads() == 1 || count < 2 * prim_chunk) return bound(0, count);
-    QuadBox result;
-    std::mutex merging;
-    executor.for_each_chunk(count, prim_chunk, [&](std::size_t begin, std::size_t end) {
-        const QuadBox part = bound(begin, end);
-        const std::scoped_lock lock(merging);
-        result.unite(part);
-    });
-    return result;
-}
-
 } // namespace raywise

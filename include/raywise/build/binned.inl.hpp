@@ -33,8 +33,7 @@ public:
         const PrimBox* items = range.from + range.first;
         if (range.count() <= few_prims) return sweep_few(items, range.count(), box, measure);
 
-        const QuadBox centroids = bound_centroids(items, range.count(), executor);
-        const BinGrid grid(centroids, bins_for(range.count(), bin_count_));
+        const BinGrid grid(range.centroids, bins_for(range.count(), bin_count_));
         Bins bins(grid.bin_count());
         fill_bins(bins, items, range.count(), grid, executor);
         Split best;

@@ -90,8 +90,4 @@ void fill_bins(
     const Executor& executor
 );
 
-/// Bounds of the (doubled) centroids; the same for any executor.
-[[nodiscard]] QuadBox
-bound_centroids(const PrimBox* items, std::size_t count, const Executor& executor);
-
 } // namespace raywise

@@ -25,6 +25,7 @@ namespace raywise {
 /// What is known of the two halves of a node after a split was chosen.
 struct Halves {
     std::size_t left_count = 0;
+    CentroidBounds centroids;
     Aabb left;
     Aabb right;
     float left_mass = 0;
@@ -102,7 +103,8 @@ Bvh TopDown<M, Search>::build(std::span<const Aabb> boxes, const M& measure) {
     prims_.resize(boxes.size());
 
     Task root;
-    root.range = {items.items.get(), items.spare.get(), 0, boxes.size()};
+    root.range = {items.items.get(), items.spare.get(), 0, boxes.size(), {}};
+    root.range.centroids = bound_centroids(root.range, executor_);
     root.box = to_aabb(bound_boxes(root.range, executor_));
     const auto& local = narrowed_to(measure, root.box);
     root.mass.mass = static_cast<float>(local(root.box));
@@ -163,11 +165,11 @@ auto TopDown<M, Search>::divide(const Task& task, const M& measure, const Execut
     }
     const std::size_t middle = task.range.first + halves->left_count;
     Children children;
-    children.left.range = task.range.arrived(task.range.first, middle);
+    children.left.range = task.range.arrived(task.range.first, middle, halves->centroids.left);
     children.left.box = halves->left;
     children.left.mass = {mass.metric, halves->left_mass};
     children.left.level = task.level + 1;
-    children.right.range = task.range.arrived(middle, task.range.last);
+    children.right.range = task.range.arrived(middle, task.range.last, halves->centroids.right);
     children.right.box = halves->right;
     children.right.mass = {mass.metric, halves->right_mass};
     children.right.level = task.level + 1;
@@ -191,11 +193,12 @@ std::optional<Halves> TopDown<M, Search>::halve(
     const int levels_left = params_.max_depth - (task.level + 1);
     // A lopsided split is refused where the levels left would not do for its larger child.
     if (split && split->cost.larger <= capacity(params_.max_leaf_size, levels_left)) {
-        partition_stable(
-            task.range, task.range.first + split->left_count, split->is_left, executor
-        );
+        const std::size_t middle = task.range.first + split->left_count;
+        const CentroidBounds centroids =
+            partition_stable(task.range, middle, split->is_left, executor);
         return Halves{
             split->left_count,
+            centroids,
             to_aabb(split->left),
             to_aabb(split->right),
             split->cost.left_mass,
@@ -204,15 +207,21 @@ std::optional<Halves> TopDown<M, Search>::halve(
     }
     const std::size_t left_count = count / 2;
     const std::size_t middle = task.range.first + left_count;
-    const QuadBox centroids = bound_centroids(task.range.from + task.range.first, count, executor);
-    const int axis = dominant_axis(to_vec(centroids.hi - centroids.lo));
-    partition_stable(task.range, middle, MedianSplit(task.range, middle, axis), executor);
-    const PrimRange left_range = task.range.arrived(task.range.first, middle);
-    const PrimRange right_range = task.range.arrived(middle, task.range.last);
-    const Aabb left = to_aabb(bound_boxes(left_range, executor));
-    const Aabb right = to_aabb(bound_boxes(right_range, executor));
+    const int axis = dominant_axis(to_vec(task.range.centroids.hi - task.range.centroids.lo));
+    const CentroidBounds centroids =
+        partition_stable(task.range, middle, MedianSplit(task.range, middle, axis), executor);
+    const auto bound = [&](std::size_t begin, std::size_t end) {
+        return to_aabb(bound_boxes(task.range.arrived(begin, end, {}), executor));
+    };
+    const Aabb left = bound(task.range.first, middle);
+    const Aabb right = bound(middle, task.range.last);
     return Halves{
-        left_count, left, right, static_cast<float>(metric(left)), static_cast<float>(metric(right))
+        left_count,
+        centroids,
+        left,
+        right,
+        static_cast<float>(metric(left)),
+        static_cast<float>(metric(right))
     };
 }
 
