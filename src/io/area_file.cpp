@@ -6,6 +6,7 @@
 #include <raywise/io/files.hpp>
 #include <raywise/io/ray_file.hpp>
 
+#include <cmath>
 #include <numbers>
 #include <set>
 #include <string>
@@ -32,9 +33,27 @@ Aabb read_box(JsonFields& fields) {
     return box;
 }
 
+/// Forward by `direction`, with a roll; or with `right` and `up`, which are then taken as they are.
 Frame read_frame(JsonFields& fields) {
     const Vec3d direction = fields.vector("direction");
-    return frame_along(direction, radians(fields.number_or("roll_deg", 0)));
+    if (fields.optional("right") == nullptr && fields.optional("up") == nullptr)
+        return frame_along(direction, radians(fields.number_or("roll_deg", 0)));
+    const Frame frame{fields.vector("right"), fields.vector("up"), direction};
+    constexpr double tolerance = 1e-6;
+    if (!(length(cross(frame.right, frame.up) - frame.forward) < tolerance &&
+          std::abs(length(frame.right) - 1) < tolerance &&
+          std::abs(length(frame.up) - 1) < tolerance))
+        fields.refuse("'right', 'up' and 'direction' are not orthonormal and right-handed");
+    return frame;
+}
+
+/// Half a field of view by its tangents, or by the full angles.
+RadialWindow read_tangents(JsonFields& fields) {
+    if (fields.optional("tan_x") == nullptr && fields.optional("tan_y") == nullptr)
+        return window_of_fov(fields.number("fov_x_deg"), fields.number("fov_y_deg"));
+    const RadialWindow window{fields.number("tan_x"), fields.number("tan_y")};
+    if (!(window.tan_x > 0 && window.tan_y > 0)) fields.refuse("a tangent is not above 0");
+    return window;
 }
 
 Obb read_obb(JsonFields& fields) {
@@ -48,8 +67,7 @@ Frustum read_frustum(JsonFields& fields) {
     Frustum frustum;
     frustum.eye = fields.vector("eye");
     frustum.frame = read_frame(fields);
-    const RadialWindow window =
-        window_of_fov(fields.number("fov_x_deg"), fields.number("fov_y_deg"));
+    const RadialWindow window = read_tangents(fields);
     frustum.tan_x = window.tan_x;
     frustum.tan_y = window.tan_y;
     frustum.near = fields.number_or("near", 0);
@@ -92,7 +110,61 @@ Emission read_emission(JsonFields& fields, const std::string& fallback) {
     fields.refuse("emission '" + name + "' is not pinhole, isotropic or yaw_pitch");
 }
 
+/// The window of parallel rays, given instead of derived from direction and region.
+ParallelDistribution read_window(const Json& json, JsonFields& parent) {
+    JsonFields fields(json, parent.path(), parent.context() + ", window");
+    ParallelParams params;
+    params.point = fields.vector("point");
+    params.frame = read_frame(fields);
+    params.half_width = fields.number("half_width");
+    params.half_height = fields.number("half_height");
+    params.start_depth = fields.number_or("start_depth", 0);
+    fields.refuse_others();
+    params.cone_half_angle_deg = parent.number_or("cone_half_angle_deg", 0);
+    return ParallelDistribution(params);
+}
+
+/// The view of radial rays, given instead of derived from apex and region. All directions when it
+/// has no field of view.
+RadialDistribution read_view(const Json& json, JsonFields& parent) {
+    JsonFields fields(json, parent.path(), parent.context() + ", view");
+    RadialParams params;
+    params.eye = fields.vector("eye");
+    params.frame = read_frame(fields);
+    if (fields.optional("tan_x") != nullptr || fields.optional("fov_x_deg") != nullptr)
+        params.window = read_tangents(fields);
+    params.start_depth = fields.number_or("start_depth", 0);
+    fields.refuse_others();
+    params.emission = read_emission(parent, params.window ? "pinhole" : "isotropic");
+    params.radius = parent.number_or("radius", 0);
+    return RadialDistribution(params);
+}
+
+/// The parts of an area that is written out in full, checked as the makers would.
+InfluenceArea
+complete(JsonFields& fields, std::string name, Region region, Distribution distribution) {
+    InfluenceArea area{
+        std::move(name),
+        region,
+        std::move(distribution),
+        fields.number_or("density", 1),
+        read_affinity(fields)
+    };
+    if (!(area.density > 0)) fields.refuse("'density' is not above 0");
+    if (!(area.affinity.angle_deg >= 0 && area.affinity.angle_deg <= 90))
+        fields.refuse("'angle_deg' is not in [0, 90]");
+    if (area.affinity.distance && *area.affinity.distance < 0)
+        fields.refuse("'distance' is below 0");
+    return area;
+}
+
 InfluenceArea read_parallel(JsonFields& fields, std::string name, const Aabb& bounds) {
+    if (const Json* window = fields.optional("window")) {
+        const ParallelDistribution distribution = read_window(*window, fields);
+        return complete(
+            fields, std::move(name), read_region(fields.required("region"), fields), distribution
+        );
+    }
     const Vec3d direction = fields.vector("direction");
     const Json* region = fields.optional("region");
     return InfluenceArea::parallel(
@@ -106,6 +178,12 @@ InfluenceArea read_parallel(JsonFields& fields, std::string name, const Aabb& bo
 }
 
 InfluenceArea read_radial(JsonFields& fields, std::string name, const Aabb& bounds) {
+    if (const Json* view = fields.optional("view")) {
+        const RadialDistribution distribution = read_view(*view, fields);
+        return complete(
+            fields, std::move(name), read_region(fields.required("region"), fields), distribution
+        );
+    }
     const Json* region = fields.optional("region");
     return InfluenceArea::radial(
         std::move(name),
@@ -148,18 +226,36 @@ InfluenceArea read_point(JsonFields& fields, std::string name) {
 
 InfluenceArea read_measured(JsonFields& fields, std::string name, const Aabb& bounds) {
     const std::filesystem::path document = fields.path();
-    const std::vector<Ray> rays =
-        load_rays(resolve_inside(document.parent_path(), fields.text("rays"), document));
     MeasuredArea area;
+    area.rays.rays =
+        load_recorded_rays(resolve_inside(document.parent_path(), fields.text("rays"), document));
     area.rays.bounds = bounds;
+    if (const Json* box = fields.optional("bounds")) {
+        JsonFields corners(*box, fields.path(), fields.context() + ", bounds");
+        area.rays.bounds = read_box(corners);
+        corners.refuse_others();
+    }
     area.rays.shrinkage = fields.number_or("shrinkage", area.rays.shrinkage);
-    area.rays.rays.reserve(rays.size());
-    for (const Ray& ray : rays)
-        area.rays.rays.push_back({ray});
     if (const Json* region = fields.optional("region")) area.region = read_region(*region, fields);
     area.density = fields.number_or("density", area.density);
     area.affinity = read_affinity(fields);
     return InfluenceArea::measured(std::move(name), std::move(area));
+}
+
+InfluenceArea read_uniform(JsonFields& fields, std::string name, const Aabb& bounds) {
+    Aabb lines = bounds;
+    if (const Json* box = fields.optional("bounds")) {
+        JsonFields corners(*box, fields.path(), fields.context() + ", bounds");
+        lines = read_box(corners);
+        corners.refuse_others();
+    }
+    const Json* region = fields.optional("region");
+    return complete(
+        fields,
+        std::move(name),
+        region != nullptr ? read_region(*region, fields) : Region(bounds),
+        UniformDistribution(lines)
+    );
 }
 
 InfluenceArea
@@ -175,7 +271,10 @@ read_area(const Json& json, const std::string& path, std::size_t index, const Aa
         if (kind == "plane") return read_plane(fields, name);
         if (kind == "point") return read_point(fields, name);
         if (kind == "measured") return read_measured(fields, name, bounds);
-        fields.refuse("kind '" + kind + "' is not parallel, radial, plane, point or measured");
+        if (kind == "uniform") return read_uniform(fields, name, bounds);
+        fields.refuse(
+            "kind '" + kind + "' is not parallel, radial, plane, point, measured or uniform"
+        );
     };
     try {
         InfluenceArea area = read();

@@ -1,10 +1,11 @@
-// Influence areas in JSON files (docs/cli.md shows one of each kind).
+// Influence areas in JSON files (docs/file_formats.md tells every key).
 #pragma once
 
 #include <raywise/distribution/influence_area.hpp>
 #include <raywise/geometry/aabb.hpp>
 
 #include <filesystem>
+#include <span>
 #include <vector>
 
 namespace raywise {
@@ -20,5 +21,11 @@ inline constexpr int area_file_schema_version = 1;
 /// makers of InfluenceArea refuse.
 [[nodiscard]] std::vector<InfluenceArea>
 load_areas(const std::filesystem::path& path, const Aabb& scene_bounds);
+
+/// Writes the areas in one step, every number of regions and distributions given in full, so that
+/// reading derives nothing and gives the same areas. The rays of a measured area go to a file of
+/// their own beside it, STEM.INDEX.npz, INDEX from 0. Throws Error when a file cannot be written or
+/// a name is not UTF-8.
+void save_areas(const std::filesystem::path& path, std::span<const InfluenceArea> areas);
 
 } // namespace raywise
