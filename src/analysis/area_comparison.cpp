@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 namespace raywise::detail {
 
@@ -98,7 +99,7 @@ TreeRun run_tree(
 
 /// What became of the rays of all sets in the whole structure.
 struct FullRun {
-    std::vector<double> cost; // by set
+    double cost = 0; // of all rays
     std::uint64_t rays = 0;
     std::uint64_t hits = 0;
     std::uint64_t answered = 0; // without the global tree
@@ -110,6 +111,22 @@ struct FullRun {
     double continuation_cost = 0; // of all global searches after a local one
     double global_alone_cost = 0; // of the rays that the local tree was asked about
     std::uint64_t wrong = 0;
+
+    FullRun& operator+=(const FullRun& other) {
+        cost += other.cost;
+        rays += other.rays;
+        hits += other.hits;
+        answered += other.answered;
+        local_hits += other.local_hits;
+        searched += other.searched;
+        continued += other.continued;
+        continued_hits += other.continued_hits;
+        local_cost += other.local_cost;
+        continuation_cost += other.continuation_cost;
+        global_alone_cost += other.global_alone_cost;
+        wrong += other.wrong;
+        return *this;
+    }
 };
 
 void add_served(FullRun& run, const Served& served, bool hit, const CostConstants& constants) {
@@ -134,30 +151,49 @@ void add_served(FullRun& run, const Served& served, bool hit, const CostConstant
     }
 }
 
+/// One set of rays; `global_costs` and `global_hits` are those of the global tree alone.
 FullRun run_full(
     const Accelerator& accelerator,
-    const RaySets& sets,
-    const TreeRun& global,
+    std::span<const Ray> rays,
+    std::span<const double> global_costs,
+    std::span<const std::optional<Hit>> global_hits,
     const CostConstants& constants
 ) {
     FullRun run;
-    std::size_t at = 0;
-    for (std::size_t s = 0; s < sets.size(); ++s) {
-        double cost = 0;
-        for (std::size_t i = 0; i < sets[s].size(); ++i, ++at) {
-            Served served;
-            const std::optional<Hit> hit = accelerator.closest_hit(sets[s][i], served);
-            add_served(run, served, hit.has_value(), constants);
-            cost += cost_of(served.total(), constants);
-            if (!served.searches().empty() && served.searches().front().area) {
-                run.global_alone_cost += global.every_cost[at];
-            }
-            run.wrong += same_hit(hit, global.hits[s][i]) ? 0U : 1U;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        Served served;
+        const std::optional<Hit> hit = accelerator.closest_hit(rays[i], served);
+        add_served(run, served, hit.has_value(), constants);
+        run.cost += cost_of(served.total(), constants);
+        if (!served.searches().empty() && served.searches().front().area) {
+            run.global_alone_cost += global_costs[i];
         }
-        run.rays += sets[s].size();
-        run.cost.push_back(cost / static_cast<double>(sets[s].size()));
+        run.wrong += same_hit(hit, global_hits[i]) ? 0U : 1U;
     }
+    run.rays = rays.size();
     return run;
+}
+
+/// Every set, in its order whatever the threads.
+std::vector<FullRun> run_full(
+    const Accelerator& accelerator,
+    const RaySets& sets,
+    const TreeRun& global,
+    const CostConstants& constants,
+    const Executor& executor
+) {
+    std::vector<FullRun> runs(sets.size());
+    executor.for_each_chunk(sets.size(), 1, [&](std::size_t s, std::size_t) {
+        const std::size_t first = s * sets[s].size(); // sets are equally long
+        runs[s] = run_full(
+            accelerator,
+            sets[s],
+            std::span(global.every_cost).subspan(first, sets[s].size()),
+            global.hits[s],
+            constants
+        );
+    });
+    return runs;
 }
 
 /// The segments from where the rays end back to where they start: the shadow rays of a light that
@@ -183,27 +219,32 @@ RaySets shadow_rays(const RaySets& sets, const TreeRun& global) {
 struct ShadowRun {
     std::vector<double> full; // by set
     std::vector<double> global;
-    std::uint64_t wrong = 0;
+    std::vector<std::uint64_t> wrong;
 };
 
 ShadowRun run_shadows(
     const Accelerator& accelerator,
     const RaySets& shadows,
-    const CostConstants& constants
+    const CostConstants& constants,
+    const Executor& executor
 ) {
-    ShadowRun run;
-    for (const std::vector<Ray>& rays : shadows) {
+    ShadowRun run{
+        std::vector<double>(shadows.size()),
+        std::vector<double>(shadows.size()),
+        std::vector<std::uint64_t>(shadows.size())
+    };
+    executor.for_each_chunk(shadows.size(), 1, [&](std::size_t s, std::size_t) {
         CountedQuery full;
         Counts global;
-        for (const Ray& ray : rays) {
+        for (const Ray& ray : shadows[s]) {
             const bool here = accelerator.any_hit(ray, full);
             const bool there =
                 any_hit(accelerator.global_tree(), accelerator.global_triangles(), ray, global);
-            run.wrong += here == there ? 0U : 1U;
+            run.wrong[s] += here == there ? 0U : 1U;
         }
-        run.full.push_back(cost_of(full, constants));
-        run.global.push_back(cost_of(global, constants));
-    }
+        run.full[s] = cost_of(full, constants);
+        run.global[s] = cost_of(global, constants);
+    });
     return run;
 }
 
@@ -258,7 +299,7 @@ public:
         , area_(prepared(input.area, input.params))
         , mode_(input.params.faithful ? MeasureMode::thesis : MeasureMode::exact)
         , sets_(draw_rays(input, area_.distribution))
-        , baseline_(build(baseline_of(input.params))) {}
+        , baseline_(build_baseline()) {}
 
     AreaResult run() {
         const CostConstants& constants = input_.params.constants;
@@ -277,7 +318,13 @@ public:
             if (variant == baseline_of(input_.params)) {
                 result.rows.push_back(compare_variant(variant, base, result.summary));
             } else {
-                result.rows.push_back(compare_variant(variant, build(variant), result.summary));
+                const Accelerator other = base.with_local_heuristic(
+                    local_heuristic(variant, input_.params),
+                    input_.scene.view(),
+                    input_.executor,
+                    input_.progress
+                );
+                result.rows.push_back(compare_variant(variant, other, result.summary));
             }
             input_.progress.step("compare " + area_.name, ++done, input_.params.variants.size());
         }
@@ -299,9 +346,9 @@ private:
         return params;
     }
 
-    [[nodiscard]] Accelerator build(Variant variant) const {
+    [[nodiscard]] Accelerator build_baseline() const {
         AcceleratorParams params;
-        params.local = local_heuristic(variant, input_.params);
+        params.local = local_heuristic(baseline_of(input_.params), input_.params);
         params.global = global_heuristic(input_.params);
         params.membership = membership();
         if (input_.params.faithful) {
@@ -343,14 +390,23 @@ private:
         describe_costs(row, run);
         if (!input_.params.faithful) row.mismatches += count_differences(run);
 
-        const FullRun full = run_full(accelerator, sets_, global_, constants);
+        FullRun full;
+        std::vector<double> full_costs;
+        for (const FullRun& of_set :
+             run_full(accelerator, sets_, global_, constants, input_.executor)) {
+            full += of_set;
+            full_costs.push_back(of_set.cost / static_cast<double>(of_set.rays));
+        }
+        row.full_cost = confidence_95(full_costs);
+        row.full_ratio = ratio(full_costs, global_.cost);
         describe_query(row, run, full);
-        const ShadowRun shadows = run_shadows(accelerator, shadows_, constants);
+        const ShadowRun shadows = run_shadows(accelerator, shadows_, constants, input_.executor);
         row.shadow_ratio = ratio(shadows.full, shadows.global);
         if (input_.params.faithful) {
             row.wrong_fraction = static_cast<double>(full.wrong) / static_cast<double>(full.rays);
         } else {
-            row.mismatches += full.wrong + shadows.wrong;
+            row.mismatches +=
+                std::accumulate(shadows.wrong.begin(), shadows.wrong.end(), full.wrong);
         }
         if (is_baseline) describe_service(summary, full);
         if (input_.params.repeats > 0) time_variant(row, accelerator, summary);
@@ -386,10 +442,12 @@ private:
 
     /// The work of the build, and its time when times are wanted: members, boxes and tree.
     void rebuild(ComparisonRow& row, Variant variant) const {
-        const int repeats = std::min(input_.params.repeats, 3);
+        if (input_.params.repeats == 0 && !input_.params.faithful) return;
+        // Short builds are repeated, long ones speak for themselves.
+        constexpr double enough_ms = 500;
+        const auto most = static_cast<std::size_t>(std::max(input_.params.repeats, 1));
         std::vector<double> times;
-        if (repeats == 0 && !input_.params.faithful) return;
-        for (int i = 0; i < std::max(repeats, 1); ++i) {
+        for (double spent = 0; times.size() < most && spent < enough_ms; spent += times.back()) {
             const Stopwatch watch;
             const std::vector<PrimId> members =
                 members_of(input_.scene.view(), area_.region, membership(), input_.executor);
@@ -402,7 +460,7 @@ private:
             times.push_back(watch.milliseconds());
             row.build_work = built.report;
         }
-        if (repeats > 0) row.build_ms = median(times);
+        if (input_.params.repeats > 0) row.build_ms = median(times);
     }
 
     void describe_costs(ComparisonRow& row, const TreeRun& run) const {
@@ -434,8 +492,6 @@ private:
     }
 
     void describe_query(ComparisonRow& row, const TreeRun& run, const FullRun& full) const {
-        row.full_cost = confidence_95(full.cost);
-        row.full_ratio = ratio(full.cost, global_.cost);
         double restarts = 0;
         double restart_cost = 0;
         for (std::size_t s = 0; s < sets_.size(); ++s) {
@@ -502,7 +558,8 @@ private:
         };
         const std::array<TimedPass, 4> passes{trace_base, trace_own, trace_global, trace_full};
         std::array<std::vector<double>, 4> ns;
-        for (const std::vector<Ray>& rays : sets_) {
+        for (const std::vector<Ray>& set : sets_) {
+            const auto rays = std::span(set).first(std::min(set.size(), input_.params.timed_rays));
             std::vector<std::uint64_t> sums;
             const std::vector<double> medians =
                 time_interleaved(passes, rays, input_.params.repeats, sums);

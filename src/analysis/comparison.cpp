@@ -28,6 +28,7 @@ void check(const Scene& scene, std::span<const InfluenceArea> areas, const Compa
     if (params.repeats < 0 || params.repeats > 1000) {
         throw Error("compare: repeats must be in [0, 1000]");
     }
+    if (params.timed_rays < 1) throw Error("compare: timed_rays must be at least 1");
     if (!(params.brute_force_budget >= 0)) {
         throw Error("compare: the brute force budget must be at least 0");
     }

@@ -320,9 +320,13 @@ InfluenceArea InfluenceArea::measured(std::string name, MeasuredArea area) {
 
 namespace {
 
-/// Between the lines along `a` and `b`, in [0, pi/2]; precise near 0.
-double line_angle_rad(Vec3d a, Vec3d b) {
-    return std::atan2(length(cross(a, b)), std::abs(dot(a, b)));
+/// Whether the lines along `a` and `b` meet at an angle of at most `angle_rad`, in [0, pi/2];
+/// precise near 0. Squares of floats' products neither overflow nor vanish in double.
+bool within_angle(Vec3d a, Vec3d b, double angle_rad) {
+    constexpr double rounding = 1 + 16 * double_epsilon; // so that a right angle admits every line
+    const Vec3d across = cross(a, b);
+    const double sine = std::sin(angle_rad) * rounding;
+    return dot(across, across) <= sine * sine * dot(a, a) * dot(b, b);
 }
 
 /// Distance of the ray's line from the eye, given the vector from the eye to the ray's origin.
@@ -342,18 +346,21 @@ bool starts_inside(const InfluenceArea& area, const Ray& ray) {
 } // namespace
 
 bool is_affine(const InfluenceArea& area, const Ray& ray) {
-    if (!starts_inside(area, ray)) return false;
+    return starts_inside(area, ray) && follows(area, ray);
+}
+
+bool follows(const InfluenceArea& area, const Ray& ray) {
     const double tolerance = to_radians(area.affinity.angle_deg);
     const Vec3d direction = to_double(ray.direction);
     if (const auto* parallel = std::get_if<ParallelDistribution>(&area.distribution))
-        return line_angle_rad(direction, parallel->params().frame.forward) <= tolerance;
+        return within_angle(direction, parallel->params().frame.forward, tolerance);
     if (const auto* radial = std::get_if<RadialDistribution>(&area.distribution)) {
         const Vec3d eye = radial->params().eye;
         const Vec3d from_eye = to_double(ray.origin) - eye;
         if (area.affinity.distance)
             return line_distance(from_eye, direction) <= *area.affinity.distance;
         if (length(from_eye) <= rounding_of(to_double(ray.origin), eye)) return true;
-        return line_angle_rad(direction, from_eye) <= tolerance;
+        return within_angle(direction, from_eye, tolerance);
     }
     return true;
 }
@@ -362,7 +369,7 @@ bool is_exact(const InfluenceArea& area, const Ray& ray) {
     if (!starts_inside(area, ray)) return false;
     const Vec3d direction = to_double(ray.direction);
     if (const auto* parallel = std::get_if<ParallelDistribution>(&area.distribution))
-        return line_angle_rad(direction, parallel->params().frame.forward) <= 4 * float_epsilon;
+        return within_angle(direction, parallel->params().frame.forward, 4 * float_epsilon);
     if (const auto* radial = std::get_if<RadialDistribution>(&area.distribution)) {
         const Vec3d origin = to_double(ray.origin);
         const Vec3d eye = radial->params().eye;

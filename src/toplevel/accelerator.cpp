@@ -195,7 +195,7 @@ Accelerator::Candidates Accelerator::candidates_of(const Ray& ray) const {
         is_exact_mode ? static_cast<std::size_t>(params_.max_candidates) : most_candidates;
     Candidates best;
     visit_areas_at(index_, ray.origin, [&](AreaId id) {
-        if (!local(id).is_enabled || !is_affine(areas_[index_of(id)], ray)) return;
+        if (!local(id).is_enabled || !follows(areas_[index_of(id)], ray)) return;
         const Candidate candidate{id, proven_end(id, ray)};
         if (is_exact_mode && candidate.exit <= ray.t_min) return;
         // Insertion into a short sorted list, whose last falls off when it is full.
@@ -344,33 +344,53 @@ Accelerator build_accelerator(
     result.global_triangles_ = PackedTriangles(result.global_tree_, triangles);
 
     std::vector<Region> regions;
-    for (const InfluenceArea& area : result.areas_) {
-        progress.step("build", 1 + result.locals_.size(), steps);
+    for (const InfluenceArea& area : result.areas_)
         regions.push_back(area.region);
-        const auto members = members_of(triangles, area.region, params.membership, executor);
+    result.index_ = build_region_index(regions, params.index);
+    result.build_locals(triangles, executor, progress);
+    progress.step("build", steps, steps);
+    return result;
+}
+
+void Accelerator::build_locals(
+    const TriangleView& triangles,
+    const Executor& executor,
+    const Progress& progress
+) {
+    locals_.clear();
+    for (const InfluenceArea& area : areas_) {
+        progress.step("build", 1 + locals_.size(), areas_.size() + 1);
+        const auto members = members_of(triangles, area.region, params_.membership, executor);
         LocalStructure structure;
         structure.tree = build_tree(
                              build_input_of(triangles, members, executor),
                              area.distribution,
-                             params.local,
+                             params_.local,
                              executor
         )
                              .tree;
         remap_prims(structure.tree, members);
         structure.triangles = PackedTriangles(structure.tree, triangles);
-        structure.expected_cost = expected_cost(structure.tree, area, params.local.binned.cost);
-        result.locals_.push_back(std::move(structure));
+        structure.expected_cost = expected_cost(structure.tree, area, params_.local.binned.cost);
+        locals_.push_back(std::move(structure));
     }
-    result.index_ = build_region_index(regions, params.index);
+    if (!params_.gain) return;
+    for (std::size_t i = 0; i < areas_.size(); ++i) {
+        LocalStructure& structure = locals_[i];
+        structure.gain = measure_gain(*this, to_area(i), *params_.gain);
+        structure.is_enabled = *structure.gain > 0;
+    }
+}
 
-    if (params.gain) {
-        for (std::size_t i = 0; i < result.areas_.size(); ++i) {
-            LocalStructure& structure = result.locals_[i];
-            structure.gain = measure_gain(result, to_area(i), *params.gain);
-            structure.is_enabled = *structure.gain > 0;
-        }
-    }
-    progress.step("build", steps, steps);
+Accelerator Accelerator::with_local_heuristic(
+    const Heuristic& local,
+    const TriangleView& triangles,
+    const Executor& executor,
+    const Progress& progress
+) const {
+    Accelerator result = *this;
+    result.params_.local = local;
+    result.build_locals(triangles, executor, progress);
     return result;
 }
 

@@ -46,11 +46,12 @@ inline constexpr Variant strong_baseline{Variant::Measure::surface, Variant::Axe
 
 struct CompareParams {
     std::vector<Variant> variants = default_variants(); ///< the baseline is added if absent
-    std::size_t rays = 20'000; ///< per area and seed, drawn from the area; in [1, 10^8]
-    int seeds = 5;             ///< independent ray sets, in [1, 1000]
-    std::uint64_t seed = 1;    ///< of the first set
-    int repeats = 5;           ///< timed passes per variant and set; 0: no timing; at most 1000
-    double brute_force_budget = 2e8; ///< triangle tests spent on checking answers per area; >= 0
+    std::size_t rays = 20'000;     ///< per area and seed, drawn from the area; in [1, 10^8]
+    int seeds = 5;                 ///< independent ray sets, in [1, 1000]
+    std::uint64_t seed = 1;        ///< of the first set
+    int repeats = 5;               ///< timed passes per variant and set; 0: no timing; at most 1000
+    std::size_t timed_rays = 4096; ///< of each set, the first so many are timed; >= 1
+    double brute_force_budget = 5e7; ///< triangle tests spent on checking answers per area; >= 0
     bool faithful = false;           ///< as the thesis: see `faithful_params`
     Heuristic heuristic;     ///< of every variant, apart from its measure and axes; not used when
                              ///< faithful

@@ -100,6 +100,10 @@ struct InfluenceArea {
 /// for an invalid ray.
 [[nodiscard]] bool is_affine(const InfluenceArea& area, const Ray& ray);
 
+/// What remains of `is_affine` for a ray that is known to be valid and to start in the region: a
+/// few products, for the search of areas in a query.
+[[nodiscard]] bool follows(const InfluenceArea& area, const Ray& ray);
+
 /// Affine with tolerance zero: the ray lies in the pencil, that is, along the direction or through
 /// the eye, up to the rounding of its float coordinates. Never for uniform and measured areas.
 [[nodiscard]] bool is_exact(const InfluenceArea& area, const Ray& ray);

@@ -118,6 +118,15 @@ public:
         const Executor& executor = serial_executor()
     ) const;
 
+    /// This accelerator with local trees by another heuristic; the global tree and the index are
+    /// copied, not built again. `triangles` must be those that this one was built from.
+    [[nodiscard]] Accelerator with_local_heuristic(
+        const Heuristic& local,
+        const TriangleView& triangles,
+        const Executor& executor = serial_executor(),
+        const Progress& progress = {}
+    ) const;
+
     /// The area of that name, for callers who know which area their rays belong to. Throws Error
     /// when there is none. Valid as long as the accelerator stays where it is.
     [[nodiscard]] AreaHandle operator[](std::string_view name) const;
@@ -158,6 +167,10 @@ private:
         Candidate items[most_candidates];
         std::size_t count = 0;
     };
+
+    /// The local trees of all areas, and whether they pay.
+    void
+    build_locals(const TriangleView& triangles, const Executor& executor, const Progress& progress);
 
     /// The areas to ask for a valid ray, best first.
     [[nodiscard]] Candidates candidates_of(const Ray& ray) const;
