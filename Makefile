@@ -37,7 +37,7 @@ verify: setup
 	@build/release/bin/raywise_verify
 
 bench: build
-	@build/release/bin/raywise_bench
+	@build/release/bin/bench_build_binned
 
 format: setup
 	@git ls-files '*.hpp' '*.cpp' | xargs clang-format-19 -i
