@@ -99,9 +99,7 @@ bool parse(
         return true;
     } catch (const CLI::CallForHelp&) {
         command = chosen(commands);
-        put({},
-            command != nullptr ? command->app->help("raywise " + command->app->get_name())
-                               : root.help());
+        put({}, command != nullptr ? command->app->help("raywise") : root.help());
         return true;
     } catch (const CLI::ExtrasError&) {
         command = chosen(commands);
@@ -113,7 +111,7 @@ bool parse(
 }
 
 void run(const std::vector<std::string>& arguments, Console& console, const StopSignals& signals) {
-    CLI::App root("Acceleration structures that know where the rays go.");
+    CLI::App root("Acceleration structures that know where the rays go.", "raywise");
     root.set_version_flag("--version", "raywise " + version());
     root.require_subcommand(1);
     root.option_defaults()->take_last();
