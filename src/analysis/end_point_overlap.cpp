@@ -170,17 +170,27 @@ std::vector<PrimId> distinct_prims(const Bvh& tree) {
     return prims;
 }
 
+/// At most `most` of the ids, evenly spread.
+std::vector<PrimId> every_kth(const std::vector<PrimId>& all, std::size_t most) {
+    const std::size_t step = all.size() / most + (all.size() % most != 0 ? 1 : 0);
+    std::vector<PrimId> chosen;
+    for (std::size_t i = 0; i < all.size(); i += step)
+        chosen.push_back(all[i]);
+    return chosen;
+}
+
 } // namespace
 
 double measure_end_point_overlap(
     const Bvh& tree,
     const TriangleView& triangles,
     const CostConstants& constants,
-    const Executor& executor
+    const Executor& executor,
+    std::size_t most_triangles
 ) {
     if (tree.is_empty()) return 0;
     const Places places(tree);
-    const std::vector<PrimId> prims = distinct_prims(tree);
+    const std::vector<PrimId> prims = every_kth(distinct_prims(tree), most_triangles);
     double surface = 0;
     for (const PrimId prim : prims)
         surface += area(triangles[prim]);

@@ -1,5 +1,7 @@
 #include <raywise/core/executor.hpp>
 
+#include "core/handover.hpp"
+
 #include <raywise/core/error.hpp>
 
 #include <tbb/parallel_for.h>
@@ -13,12 +15,6 @@
 
 namespace raywise {
 
-struct Executor::Arena {
-    explicit Arena(int threads) : tasks(threads) {}
-
-    tbb::task_arena tasks;
-};
-
 namespace {
 
 int checked_threads(int threads) {
@@ -29,6 +25,13 @@ int checked_threads(int threads) {
 }
 
 } // namespace
+
+struct Executor::Arena {
+    // More threads than the machine has would only make the scheduler complain.
+    explicit Arena(int threads) : tasks(std::min(threads, checked_threads(0))) {}
+
+    tbb::task_arena tasks;
+};
 
 Executor::Executor(int threads) : threads_(checked_threads(threads)) {
     if (threads_ > 1) arena_ = std::make_unique<Arena>(threads_);
@@ -44,7 +47,10 @@ void Executor::invoke(FunctionRef<void()> first, FunctionRef<void()> second) con
         second();
         return;
     }
-    arena_->tasks.execute([&] { tbb::parallel_invoke(first, second); });
+    Handover handover;
+    arena_->tasks.execute([&] {
+        tbb::parallel_invoke([&] { handover.run(first); }, [&] { handover.run(second); });
+    });
 }
 
 void Executor::for_each_chunk(
@@ -59,7 +65,12 @@ void Executor::for_each_chunk(
             run(i);
         return;
     }
-    arena_->tasks.execute([&] { tbb::parallel_for(std::size_t{0}, chunks, run); });
+    Handover handover;
+    arena_->tasks.execute([&] {
+        tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t i) {
+            handover.run([&] { run(i); });
+        });
+    });
 }
 
 const Executor& serial_executor() {

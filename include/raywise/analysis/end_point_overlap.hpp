@@ -9,6 +9,8 @@
 #include <raywise/geometry/triangle_view.hpp>
 #include <raywise/geometry/vec.hpp>
 
+#include <cstddef>
+#include <limits>
 #include <span>
 
 namespace raywise {
@@ -17,11 +19,15 @@ namespace raywise {
 /// tree's surface that lies in the node's box without belonging to its subtree. In box tests, >= 0;
 /// 0 for a tree of no area. `triangles[id]` must answer for every primitive of the tree. The same
 /// for any number of threads. O(sum over the triangles of the boxes they reach into).
+///
+/// Of more than `most_triangles` (>= 1), every k-th by id stands for all: the ratio of the two sums
+/// over that sample, with the least k that suffices.
 [[nodiscard]] double measure_end_point_overlap(
     const Bvh& tree,
     const TriangleView& triangles,
     const CostConstants& constants = {},
-    const Executor& executor = serial_executor()
+    const Executor& executor = serial_executor(),
+    std::size_t most_triangles = std::numeric_limits<std::size_t>::max()
 );
 
 /// Where a ray ended.

@@ -1,4 +1,7 @@
+// Bodies of estimated_cost.hpp.
 #pragma once
+
+#include <raywise/analysis/estimated_cost.hpp>
 
 #include <cstddef>
 #include <vector>

@@ -1,5 +1,7 @@
+// Bodies of overlap.hpp.
 #pragma once
 
+#include <raywise/analysis/overlap.hpp>
 #include <raywise/bvh/walk.hpp>
 
 namespace raywise {

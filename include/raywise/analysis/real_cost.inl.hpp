@@ -1,4 +1,7 @@
+// Bodies of real_cost.hpp.
 #pragma once
+
+#include <raywise/analysis/real_cost.hpp>
 
 namespace raywise {
 

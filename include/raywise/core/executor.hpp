@@ -13,8 +13,8 @@ namespace raywise {
 /// exception of a task reaches the caller.
 class Executor {
 public:
-    /// `threads`: 0 for all hardware threads, 1 for serial work; at most 1024. Throws Error when
-    /// out of range.
+    /// `threads`: 0 for all hardware threads, 1 for serial work; at most 1024, of which no more run
+    /// than the machine has. Throws Error when out of range.
     explicit Executor(int threads = 0);
     ~Executor();
     Executor(Executor&&) noexcept;

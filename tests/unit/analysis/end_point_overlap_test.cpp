@@ -1,6 +1,8 @@
 #include <raywise/analysis/end_point_overlap.hpp>
 
+#include <raywise/build/binned.hpp>
 #include <raywise/core/rng.hpp>
+#include <raywise/geometry/hit_measure.hpp>
 
 #include <gtest/gtest.h>
 
@@ -126,6 +128,30 @@ TEST(EndPointOverlap, OfSurfaceIsTheLimitOfThatOfUniformPointsOnIt) {
     const double exact = measure_end_point_overlap(tree, mesh.view());
     EXPECT_GT(exact, 0.1);
     EXPECT_NEAR(measure_end_point_overlap(tree, points), exact, 0.02 * exact);
+}
+
+TEST(EndPointOverlap, OfEveryKthTriangleIsNearThatOfAll) {
+    Mesh mesh;
+    std::vector<Aabb> boxes;
+    for (std::uint64_t i = 0; i < 2000; ++i) {
+        Rng rng(3, i);
+        const auto coordinate = [&] { return rng.uniform(); };
+        const Vec3 corner{coordinate(), coordinate(), coordinate()};
+        const auto beside = [&] {
+            return corner + Vec3{coordinate(), coordinate(), coordinate()} * 0.2F;
+        };
+        mesh.add(corner, beside(), beside());
+        boxes.push_back(bounds(mesh.view()[to_prim(i)]));
+    }
+    const Bvh tree = build_binned(boxes, SurfaceMeasure{});
+    const auto measure = [&](std::size_t most) {
+        return measure_end_point_overlap(tree, mesh.view(), {}, serial_executor(), most);
+    };
+    const double all = measure(2000);
+    EXPECT_EQ(measure(1'000'000), all);
+    EXPECT_NE(measure(1000), all) << "a sample";
+    EXPECT_NEAR(measure(1000), all, 0.1 * all);
+    EXPECT_GE(measure(1), 0);
 }
 
 } // namespace
