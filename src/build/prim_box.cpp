@@ -48,10 +48,7 @@ void check_boxes(std::span<const Aabb> boxes) {
 
 PrimBoxes load_boxes(std::span<const Aabb> boxes, const Executor& executor) {
     check_count(boxes.size());
-    PrimBoxes result{
-        std::make_unique_for_overwrite<PrimBox[]>(boxes.size()),
-        std::make_unique_for_overwrite<PrimBox[]>(boxes.size())
-    };
+    PrimBoxes result{LargeBuffer<PrimBox>(boxes.size()), LargeBuffer<PrimBox>(boxes.size())};
     std::atomic<bool> is_bad = false;
     executor.for_each_chunk(boxes.size(), prim_chunk, [&](std::size_t begin, std::size_t end) {
         bool good = true;

@@ -13,8 +13,7 @@ struct Move {
 
 } // namespace
 
-NodeRoom::NodeRoom(std::size_t count)
-    : nodes_(std::allocator<Node>().allocate(2 * count), Free{2 * count}) {}
+NodeRoom::NodeRoom(std::size_t count) : nodes_(2 * count) {}
 
 std::vector<Node>
 pack_nodes(const NodeRoom& room, const NodeBlocks& blocks, const Executor& executor) {

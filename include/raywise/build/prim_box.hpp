@@ -4,6 +4,7 @@
 #include <raywise/build/quad.hpp>
 #include <raywise/core/executor.hpp>
 #include <raywise/core/ids.hpp>
+#include <raywise/core/large_buffer.hpp>
 #include <raywise/geometry/aabb.hpp>
 
 #include <cstddef>
@@ -34,8 +35,8 @@ static_assert(sizeof(PrimBox) == 32, "two fill a cache line");
 /// Two arrays of the same length, since a stable partition reads one and writes the other. The
 /// second is not initialized.
 struct PrimBoxes {
-    std::unique_ptr<PrimBox[]> items; ///< by id; -0 made +0, so that minima do not depend on order
-    std::unique_ptr<PrimBox[]> spare;
+    LargeBuffer<PrimBox> items; ///< by id; -0 made +0, so that minima do not depend on order
+    LargeBuffer<PrimBox> spare;
 };
 
 /// Throws Error, naming the first offender, unless every box is valid with coordinates in

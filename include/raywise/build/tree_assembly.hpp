@@ -4,6 +4,7 @@
 
 #include <raywise/bvh/bvh.hpp>
 #include <raywise/core/executor.hpp>
+#include <raywise/core/large_buffer.hpp>
 
 #include <cstddef>
 #include <memory>
@@ -29,12 +30,7 @@ public:
     [[nodiscard]] const Node& operator[](std::size_t slot) const { return nodes_.get()[slot]; }
 
 private:
-    struct Free {
-        std::size_t count;
-        void operator()(Node* nodes) const { std::allocator<Node>().deallocate(nodes, count); }
-    };
-
-    std::unique_ptr<Node, Free> nodes_;
+    LargeBuffer<Node> nodes_;
 };
 
 /// Node slots [begin, end) of a room, in use without gaps.
