@@ -88,6 +88,7 @@
 #include <raywise/io/report.hpp>                     // IWYU pragma: export
 #include <raywise/io/save_scene.hpp>                 // IWYU pragma: export
 #include <raywise/io/tree_file.hpp>                  // IWYU pragma: export
+#include <raywise/pencil/pencil.hpp>                 // IWYU pragma: export
 #include <raywise/scene/generate.hpp>                // IWYU pragma: export
 #include <raywise/scene/scene.hpp>                   // IWYU pragma: export
 #include <raywise/toplevel/accelerator.hpp>          // IWYU pragma: export
