@@ -43,6 +43,7 @@
 #include <raywise/core/rng.hpp>                      // IWYU pragma: export
 #include <raywise/core/rounding.hpp>                 // IWYU pragma: export
 #include <raywise/distribution/any_measure.hpp>      // IWYU pragma: export
+#include <raywise/distribution/discretized.hpp>      // IWYU pragma: export
 #include <raywise/distribution/distribution.hpp>     // IWYU pragma: export
 #include <raywise/distribution/influence_area.hpp>   // IWYU pragma: export
 #include <raywise/distribution/measured.hpp>         // IWYU pragma: export
@@ -95,6 +96,7 @@
 #include <raywise/toplevel/area_id.hpp>              // IWYU pragma: export
 #include <raywise/toplevel/build_tree.hpp>           // IWYU pragma: export
 #include <raywise/toplevel/membership.hpp>           // IWYU pragma: export
+#include <raywise/toplevel/pencil_of.hpp>            // IWYU pragma: export
 #include <raywise/toplevel/propose_areas.hpp>        // IWYU pragma: export
 #include <raywise/toplevel/region_bvh.hpp>           // IWYU pragma: export
 #include <raywise/toplevel/region_index.hpp>         // IWYU pragma: export

@@ -12,9 +12,9 @@ namespace {
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
 TEST(Pencil, RefusesWhatIsNotFiniteOrHasNoDirection) {
-    EXPECT_THROW(Pencil::parallel({0, 0, 0}), Error);
-    EXPECT_THROW(Pencil::parallel({0, infinity, 1}), Error);
-    EXPECT_THROW(Pencil::radial({0, infinity, 1}), Error);
+    EXPECT_THROW(static_cast<void>(Pencil::parallel({0, 0, 0})), Error);
+    EXPECT_THROW(static_cast<void>(Pencil::parallel({0, infinity, 1})), Error);
+    EXPECT_THROW(static_cast<void>(Pencil::radial({0, infinity, 1})), Error);
 }
 
 TEST(Pencil, HoldsItsShadowRaysAndTheRaysOfItsEmitterOnly) {

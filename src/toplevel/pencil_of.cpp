@@ -1,0 +1,26 @@
+#include <raywise/toplevel/pencil_of.hpp>
+
+#include <variant>
+
+namespace raywise {
+
+std::optional<Pencil> central_pencil_of(const InfluenceArea& area) {
+    if (const auto* parallel = std::get_if<ParallelDistribution>(&area.distribution)) {
+        return Pencil::parallel(to_float(parallel->params().frame.forward));
+    }
+    if (const auto* radial = std::get_if<RadialDistribution>(&area.distribution)) {
+        const Vec3 apex = to_float(radial->params().eye);
+        if (is_finite(apex)) return Pencil::radial(apex);
+    }
+    return std::nullopt;
+}
+
+std::optional<Pencil> pencil_of(const InfluenceArea& area) {
+    const auto* parallel = std::get_if<ParallelDistribution>(&area.distribution);
+    const auto* radial = std::get_if<RadialDistribution>(&area.distribution);
+    const bool is_blurred = (parallel && parallel->params().cone_half_angle_deg > 0) ||
+                            (radial && radial->params().radius > 0);
+    return is_blurred ? std::nullopt : central_pencil_of(area);
+}
+
+} // namespace raywise
