@@ -89,6 +89,8 @@
 #include <raywise/io/report.hpp>                     // IWYU pragma: export
 #include <raywise/io/save_scene.hpp>                 // IWYU pragma: export
 #include <raywise/io/tree_file.hpp>                  // IWYU pragma: export
+#include <raywise/optimize/child_order.hpp>          // IWYU pragma: export
+#include <raywise/optimize/depth_first.hpp>          // IWYU pragma: export
 #include <raywise/pencil/pencil.hpp>                 // IWYU pragma: export
 #include <raywise/scene/generate.hpp>                // IWYU pragma: export
 #include <raywise/scene/scene.hpp>                   // IWYU pragma: export
