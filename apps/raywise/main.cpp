@@ -124,6 +124,7 @@ void run(const std::vector<std::string>& arguments, Console& console, const Stop
         add_build(root, options),
         add_trace(root, options),
         add_compare(root, options),
+        add_bench(root, options),
         add_convert(root, options),
     };
     require_subcommand(arguments, commands);

@@ -8,9 +8,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
+#include <filesystem>
 #include <functional>
 #include <map>
+#include <system_error>
 #include <vector>
 
 namespace raywise::app {
@@ -64,6 +67,33 @@ Scene generate(const std::string& recipe, std::uint64_t seed) {
     params.seed = seed;
     if (colon != std::string::npos) params.triangles = parse_count(recipe.substr(colon + 1));
     return found->second(params);
+}
+
+bool is_recipe(const std::string& argument) {
+    return generators().count(argument.substr(0, argument.find(':'))) > 0;
+}
+
+bool has_scene_suffix(const std::filesystem::path& path) {
+    std::string suffix = path.extension().string();
+    for (char& letter : suffix)
+        if (letter >= 'A' && letter <= 'Z') letter = static_cast<char>(letter - 'A' + 'a');
+    return suffix == ".obj" || suffix == ".ply" || suffix == ".stl" || suffix == ".gltf" ||
+           suffix == ".glb";
+}
+
+/// Sorted by name.
+std::vector<std::filesystem::path> scene_files_in(const std::filesystem::path& folder) {
+    std::vector<std::filesystem::path> files;
+    std::error_code failure;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, failure))
+        if (entry.is_regular_file(failure) && has_scene_suffix(entry.path()))
+            files.push_back(entry.path());
+    if (failure)
+        throw Error(
+            ErrorKind::io, folder.string(), nowhere(), "cannot be read: " + failure.message()
+        );
+    std::sort(files.begin(), files.end());
+    return files;
 }
 
 Scene load(const SceneOptions& options, const Session& session) {
@@ -120,6 +150,33 @@ Scene open_scene(const SceneOptions& options, const Session& session) {
     return options.recipe.empty()
                ? load(options, session)
                : generate(options.recipe, static_cast<std::uint64_t>(session.options.seed));
+}
+
+std::vector<SceneOptions> scenes_named(const std::string& argument, const SceneOptions& common) {
+    namespace fs = std::filesystem;
+    SceneOptions options = common;
+    std::error_code failure;
+    if (fs::is_directory(argument, failure)) {
+        std::vector<SceneOptions> scenes;
+        for (const fs::path& file : scene_files_in(argument)) {
+            options.file = file.string();
+            scenes.push_back(options);
+        }
+        if (scenes.empty())
+            throw UsageError("'" + argument + "': there are no scene files in this folder");
+        return scenes;
+    }
+    if (is_recipe(argument)) {
+        options.recipe = argument;
+    } else if (!fs::exists(argument, failure) && !has_scene_suffix(argument)) {
+        throw UsageError(
+            "'" + argument + "' is no file, folder or generated scene" +
+            did_you_mean(argument.substr(0, argument.find(':')), generator_names())
+        );
+    } else {
+        options.file = argument;
+    }
+    return {options};
 }
 
 void require_memory(const SceneOptions& options, std::uint64_t bytes, const std::string& purpose) {

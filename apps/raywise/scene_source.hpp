@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace raywise::app {
 
@@ -27,6 +28,12 @@ void add_scene_options(CLI::App& command, SceneOptions& options);
 /// Throws Error (ErrorKind::limit) if work that needs about `bytes` beside the scene would exceed
 /// --max-memory.
 void require_memory(const SceneOptions& options, std::uint64_t bytes, const std::string& purpose);
+
+/// The scenes that an argument names: a file, every scene file of a folder (by name), or a
+/// generated scene by its recipe ("city:100000"). Throws UsageError for a word that is none of
+/// these, and for a folder without scenes. `common` gives the other options.
+[[nodiscard]] std::vector<SceneOptions>
+scenes_named(const std::string& argument, const SceneOptions& common);
 
 /// How the scene appears in reports: the recipe or the file.
 [[nodiscard]] std::string scene_title(const SceneOptions& options);

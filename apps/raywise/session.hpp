@@ -67,6 +67,7 @@ void add_common_options(CLI::App& command, CommonOptions& options, const std::st
 [[nodiscard]] Command add_build(CLI::App& root, CommonOptions& options);
 [[nodiscard]] Command add_trace(CLI::App& root, CommonOptions& options);
 [[nodiscard]] Command add_compare(CLI::App& root, CommonOptions& options);
+[[nodiscard]] Command add_bench(CLI::App& root, CommonOptions& options);
 [[nodiscard]] Command add_convert(CLI::App& root, CommonOptions& options);
 
 } // namespace raywise::app

@@ -1,13 +1,18 @@
 // Everything public, in one include.
 #pragma once
 
+#include <raywise/analysis/answer_check.hpp>         // IWYU pragma: export
 #include <raywise/analysis/break_even.hpp>           // IWYU pragma: export
 #include <raywise/analysis/comparison.hpp>           // IWYU pragma: export
 #include <raywise/analysis/end_point_overlap.hpp>    // IWYU pragma: export
 #include <raywise/analysis/estimated_cost.hpp>       // IWYU pragma: export
+#include <raywise/analysis/exact_oracle.hpp>         // IWYU pragma: export
 #include <raywise/analysis/memory.hpp>               // IWYU pragma: export
 #include <raywise/analysis/overlap.hpp>              // IWYU pragma: export
+#include <raywise/analysis/ray_order.hpp>            // IWYU pragma: export
+#include <raywise/analysis/ray_workload.hpp>         // IWYU pragma: export
 #include <raywise/analysis/real_cost.hpp>            // IWYU pragma: export
+#include <raywise/analysis/side_by_side.hpp>         // IWYU pragma: export
 #include <raywise/analysis/statistics.hpp>           // IWYU pragma: export
 #include <raywise/analysis/stopwatch.hpp>            // IWYU pragma: export
 #include <raywise/build/axis_policy.hpp>             // IWYU pragma: export
@@ -98,6 +103,7 @@
 #include <raywise/toplevel/area_id.hpp>              // IWYU pragma: export
 #include <raywise/toplevel/build_tree.hpp>           // IWYU pragma: export
 #include <raywise/toplevel/membership.hpp>           // IWYU pragma: export
+#include <raywise/toplevel/open_place.hpp>           // IWYU pragma: export
 #include <raywise/toplevel/pencil_of.hpp>            // IWYU pragma: export
 #include <raywise/toplevel/propose_areas.hpp>        // IWYU pragma: export
 #include <raywise/toplevel/region_bvh.hpp>           // IWYU pragma: export

@@ -31,9 +31,15 @@ void require_rectangular(const ReportTable& table) {
             throw Error("report: a row does not have one cell per column");
 }
 
+void require_rectangular(const Report& report) {
+    require_rectangular(report.table);
+    for (const NamedTable& more : report.more)
+        require_rectangular(more.table);
+}
+
 /// Name and value of everything in the provenance that is known, in the order of all formats.
 std::vector<std::pair<ColumnName, Cell>> provenance_cells(const Provenance& from) {
-    return {
+    std::vector<std::pair<ColumnName, Cell>> cells = {
         {"scene", from.scene},
         {"scene_hash", hex(from.scene_hash)},
         {"seed", static_cast<std::int64_t>(from.seed)},
@@ -46,6 +52,9 @@ std::vector<std::pair<ColumnName, Cell>> provenance_cells(const Provenance& from
         {"cpu", from.cpu},
         {"command", from.command},
     };
+    for (const auto& [name, value] : from.facts)
+        cells.emplace_back(name, value);
+    return cells;
 }
 
 // ---- text
@@ -132,6 +141,8 @@ std::string provenance_text(const Provenance& from) {
     text += fmt::format(
         "raywise {}, {}, {}, threads {}\n", from.version, from.compiler, from.cpu, from.threads
     );
+    for (const auto& [name, value] : from.facts)
+        text += fmt::format("{}: {}\n", name, escaped(value, 200));
     return text;
 }
 
@@ -164,6 +175,16 @@ struct JsonCell {
     Json operator()(double value) const { return value; }
     Json operator()(const std::string& value) const { return value; }
 };
+
+Json json_rows(const ReportTable& table) {
+    Json rows = Json::array();
+    for (const auto& row : table.rows) {
+        Json& object = rows.emplace_back(Json::object());
+        for (std::size_t c = 0; c < row.size(); ++c)
+            object[table.columns[c]] = visit_cell(row[c], JsonCell{});
+    }
+    return rows;
+}
 
 std::string processor_name() {
     std::ifstream file("/proc/cpuinfo");
@@ -204,10 +225,12 @@ void add_count(ReportTable& table, ColumnName name, std::uint64_t value) {
 }
 
 std::string to_text(const Report& report) {
-    require_rectangular(report.table);
+    require_rectangular(report);
     std::string text = escaped(report.title) + "\n\n";
     text += report.table.rows.size() == 1 ? upright_text(report.table) : aligned_text(report.table);
     text += "\n";
+    for (const NamedTable& more : report.more)
+        text += escaped(more.title) + "\n\n" + aligned_text(more.table) + "\n";
     for (const std::string& finding : report.findings)
         text += escaped(finding, 1000) + "\n";
     if (!report.findings.empty()) text += "\n";
@@ -215,7 +238,7 @@ std::string to_text(const Report& report) {
 }
 
 std::string to_csv(const Report& report) {
-    require_rectangular(report.table);
+    require_rectangular(report);
     const auto provenance = provenance_cells(report.provenance);
     std::string text;
     std::string tail;
@@ -235,19 +258,16 @@ std::string to_csv(const Report& report) {
 }
 
 std::string to_json(const Report& report) {
-    require_rectangular(report.table);
+    require_rectangular(report);
     Json document;
     document["schema_version"] = report_schema_version;
     document["title"] = report.title;
     Json& provenance = document["provenance"] = Json::object();
     for (const auto& [name, cell] : provenance_cells(report.provenance))
         provenance[name] = visit_cell(cell, JsonCell{});
-    Json& rows = document["rows"] = Json::array();
-    for (const auto& row : report.table.rows) {
-        Json& object = rows.emplace_back(Json::object());
-        for (std::size_t c = 0; c < row.size(); ++c)
-            object[report.table.columns[c]] = visit_cell(row[c], JsonCell{});
-    }
+    document["rows"] = json_rows(report.table);
+    for (const NamedTable& more : report.more)
+        document[more.key] = json_rows(more.table);
     document["findings"] = report.findings;
     // A file name may hold bytes that are not UTF-8; they must not cost the whole report.
     return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -1,4 +1,4 @@
-#include "open_place.hpp"
+#include <raywise/toplevel/open_place.hpp>
 
 #include <raywise/core/rng.hpp>
 

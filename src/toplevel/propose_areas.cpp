@@ -1,11 +1,10 @@
 #include <raywise/toplevel/propose_areas.hpp>
 
-#include "open_place.hpp"
-
 #include <raywise/core/error.hpp>
 #include <raywise/geometry/frame.hpp>
 #include <raywise/geometry/frustum.hpp>
 #include <raywise/geometry/obb.hpp>
+#include <raywise/toplevel/open_place.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -44,12 +44,22 @@ struct Provenance {
     CostConstants constants;
     std::string normalization; ///< how costs are scaled, in words; empty when no cost is shown
     std::string command;       ///< the command line that gives these numbers again
+    /// What else the numbers depend on, in snake_case: {"peer", "Embree 3.13.5, AVX2"}.
+    std::vector<std::pair<std::string, std::string>> facts = {};
+};
+
+/// A further table of a report.
+struct NamedTable {
+    std::string key;   ///< snake_case; its name in JSON
+    std::string title; ///< above it as text
+    ReportTable table;
 };
 
 /// A titled table with findings in words.
 struct Report {
     std::string title;
     ReportTable table;
+    std::vector<NamedTable> more = {}; ///< left out in CSV
     std::vector<std::string> findings; ///< sentences under the table
     Provenance provenance;
 };
@@ -72,7 +82,8 @@ inline constexpr int report_schema_version = 1;
 /// many runs can be joined. Findings are left out.
 [[nodiscard]] std::string to_csv(const Report& report);
 
-/// One object: schema_version, title, provenance, rows (objects by column name), findings.
+/// One object: schema_version, title, provenance, rows (objects by column name), further tables
+/// under their keys, findings.
 [[nodiscard]] std::string to_json(const Report& report);
 
 [[nodiscard]] std::string to_string(const Report& report, ReportFormat format);

@@ -1,0 +1,174 @@
+// raywise bench: rays per second beside Embree, same rays, verified answers.
+#include "bench_report.hpp"
+#include "bench_scene.hpp"
+#include "exit_code.hpp"
+#include "peer/embree.hpp"
+#include "scene_source.hpp"
+#include "session.hpp"
+
+#include <raywise/core/nearest_word.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <sstream>
+
+namespace raywise::app {
+
+namespace {
+
+struct BenchOptions {
+    std::vector<std::string> scenes;
+    SceneOptions common;
+    std::string classes;
+    bool quick = false;
+    std::size_t paths = 0;
+    int emitters = 0;
+};
+
+std::vector<std::string> class_names() {
+    std::vector<std::string> names;
+    for (const RayClass rays : all_ray_classes())
+        names.emplace_back(name_of(rays));
+    return names;
+}
+
+/// "primary,sun" as classes. Throws UsageError for a name that there is not.
+std::vector<RayClass> parse_classes(const std::string& text) {
+    const auto known = all_ray_classes();
+    if (text.empty()) return {known.begin(), known.end()};
+    const std::vector<std::string> names = class_names();
+    std::vector<RayClass> classes;
+    std::istringstream stream(text);
+    for (std::string name; std::getline(stream, name, ',');) {
+        const auto at = std::find(names.begin(), names.end(), name);
+        if (at == names.end())
+            throw UsageError(fmt::format(
+                "--classes: unknown class '{}'{} (there are {})",
+                name,
+                did_you_mean(name, names),
+                fmt::join(names, ", ")
+            ));
+        const RayClass rays = known[static_cast<std::size_t>(at - names.begin())];
+        if (std::find(classes.begin(), classes.end(), rays) == classes.end())
+            classes.push_back(rays);
+    }
+    if (classes.empty()) throw UsageError("--classes names no class");
+    return classes;
+}
+
+BenchParams params_of(const BenchOptions& options, const Session& session) {
+    BenchParams params;
+    params.classes = parse_classes(options.classes);
+    params.workload.seed = static_cast<std::uint64_t>(session.options.seed);
+    params.workload.paths = options.quick ? std::size_t{1} << 16U : std::size_t{1} << 18U;
+    params.workload.emitters = options.quick ? 2 : 4;
+    params.budget_ms = options.quick ? 250 : 1500;
+    params.brute_force = options.quick ? 20'000'000 : 1'000'000'000;
+    params.is_robust_timed = !options.quick;
+    if (options.paths > 0) params.workload.paths = options.paths;
+    if (options.emitters > 0) params.workload.emitters = options.emitters;
+    return params;
+}
+
+std::vector<SceneOptions> scenes_of(const BenchOptions& options) {
+    if (options.scenes.empty())
+        throw UsageError(
+            "a scene is needed: a file, a folder, or a generated one such as city:100000"
+        );
+    std::vector<SceneOptions> scenes;
+    for (const std::string& argument : options.scenes)
+        for (SceneOptions& scene : scenes_named(argument, options.common))
+            scenes.push_back(std::move(scene));
+    return scenes;
+}
+
+/// File names without their folders and suffixes: rows are about scenes, not about this machine.
+std::string short_title(const SceneOptions& scene) {
+    return scene.recipe.empty() ? std::filesystem::path(scene.file).stem().string() : scene.recipe;
+}
+
+void add_to(SceneBench& all, SceneBench&& one) {
+    all.rows.insert(all.rows.end(), one.rows.begin(), one.rows.end());
+    all.builds.insert(all.builds.end(), one.builds.begin(), one.builds.end());
+}
+
+void run_bench(const BenchOptions& options, const Session& session) {
+    if (!has_embree())
+        throw UsageError(
+            "bench measures beside Embree, which this raywise was built without (libembree-dev)"
+        );
+    const BenchParams params = params_of(options, session);
+    const std::vector<SceneOptions> scenes = scenes_of(options);
+    const Executor build = session.executor();
+    const Executor trace(session.options.threads == 0 ? 1 : session.options.threads);
+    const Progress progress = session.progress();
+    SceneBench bench;
+    for (const SceneOptions& source : scenes) {
+        const Scene scene = open_scene(source, session);
+        add_to(bench, bench_scene(short_title(source), scene, params, {build, trace}, progress));
+    }
+
+    Provenance provenance = session.provenance();
+    provenance.facts = {
+        {"peer", "Embree " + embree_version()},
+        {"trace_threads", fmt::format("{}", trace.threads())},
+        {"paths", fmt::format("{}", params.workload.paths)},
+        {"emitters", fmt::format("{}", params.workload.emitters)},
+    };
+    session.put_report(
+        report_of(bench, report_format(session.options.format), std::move(provenance)),
+        session.options.output
+    );
+    std::size_t wrong = 0;
+    for (const BenchRow& row : bench.rows)
+        wrong += row.mismatches;
+    if (wrong > 0) throw CheckFailed(fmt::format("{} answers differ from the exact oracle", wrong));
+}
+
+} // namespace
+
+Command add_bench(CLI::App& root, CommonOptions& options) {
+    CLI::App* app = root.add_subcommand(
+        "bench", "Measure rays per second beside Embree: same rays, verified answers"
+    );
+    const auto own = std::make_shared<BenchOptions>();
+    app->add_option(
+           "scenes,--scenes",
+           own->scenes,
+           "Scene files, folders of them, or generated scenes such as city:100000"
+    )
+        ->take_all()
+        ->type_name("SCENE");
+    app->add_option(
+        "--classes",
+        own->classes,
+        "Ray classes, such as primary,sun; without it all: " +
+            fmt::format("{}", fmt::join(class_names(), ", "))
+    );
+    app->add_flag("--quick", own->quick, "Fewer rays, emitters and rounds: seconds per scene");
+    app->add_option("--paths", own->paths, "Paths per scene; 0: 262144, with --quick 65536")
+        ->check(CLI::Range(std::size_t{0}, std::size_t{100'000'000}))
+        ->capture_default_str();
+    app->add_option("--emitters", own->emitters, "Eyes, suns and lamps each; 0: 4, with --quick 2")
+        ->check(CLI::Range(0, 64))
+        ->capture_default_str();
+    app->add_flag(
+        "--skip-invalid",
+        own->common.skip_invalid,
+        "Drop triangles that are not finite, and count them"
+    );
+    app->add_option(
+           "--max-memory",
+           own->common.max_memory,
+           "Refuse what needs more memory, such as 512M or 4G; 0: no limit"
+    )
+        ->transform(CLI::AsSizeValue(false))
+        ->capture_default_str();
+    add_common_options(*app, options, "Write the report to this file");
+    return {app, {}, [own](const Session& session) { run_bench(*own, session); }};
+}
+
+} // namespace raywise::app
