@@ -1,0 +1,63 @@
+// From a binary tree to the wide one that queries run on: which of its nodes survive. After
+// [Wald08], [Ylitie17]. Ours: any hit measure instead of the surface area.
+#pragma once
+
+#include <raywise/bvh/bvh.hpp>
+#include <raywise/bvh/wide_bvh.hpp>
+#include <raywise/core/executor.hpp>
+#include <raywise/core/large_buffer.hpp>
+#include <raywise/geometry/hit_measure.hpp>
+#include <raywise/geometry/triangle_view.hpp>
+
+#include <cstddef>
+#include <cstdint>
+
+namespace raywise {
+
+struct CollapseParams {
+    double block_cost = 0.5; ///< testing four triangles, in openings of a wide node; > 0
+    std::uint32_t max_leaf_size =
+        8; ///< triangles, in [1, 64]; exceeded only by leaves of the binary tree
+};
+
+/// Throws Error when a parameter is out of its range.
+void check(const CollapseParams& params);
+
+namespace detail {
+
+/// collapse when the measure of node i's box is weights[i].
+[[nodiscard]] WideBvh collapse_weighed(
+    const Bvh& tree,
+    const TriangleView& triangles,
+    const float* weights,
+    const CollapseParams& params,
+    const Executor& executor
+);
+
+} // namespace detail
+
+/// The wide tree of least expected cost, sum of m(node) over inner nodes plus block_cost m(leaf)
+/// per block over leaves, among those that keep some of the nodes of `tree`, by dynamic
+/// programming. Slots stand by falling measure, so that any-hit rays try the likeliest first; a
+/// triangle stands at most once per leaf. Primitive i of `tree` is triangle i of `triangles`; the
+/// boxes are those of `tree`. No primitives: an empty tree. O(n) time, 40 bytes of temporary memory
+/// per node. The same bytes for any executor. Throws Error for parameters out of range and above
+/// 2^31 - 1 blocks.
+template <HitMeasure M>
+[[nodiscard]] WideBvh collapse(
+    const Bvh& tree,
+    const TriangleView& triangles,
+    const M& measure,
+    const CollapseParams& params = {},
+    const Executor& executor = serial_executor()
+) {
+    const LargeBuffer<float> weights(tree.nodes.size());
+    constexpr std::size_t chunk = 4096;
+    executor.for_each_chunk(tree.nodes.size(), chunk, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            weights[i] = static_cast<float>(measure(tree.nodes[i].box()));
+    });
+    return detail::collapse_weighed(tree, triangles, weights.get(), params, executor);
+}
+
+} // namespace raywise

@@ -1,0 +1,240 @@
+#include <raywise/optimize/collapse.hpp>
+
+#include <raywise/bvh/bvh.hpp>
+#include <raywise/bvh/wide_bvh.hpp>
+#include <raywise/core/error.hpp>
+#include <raywise/core/executor.hpp>
+#include <raywise/core/ids.hpp>
+#include <raywise/core/large_buffer.hpp>
+#include <raywise/geometry/aabb.hpp>
+#include <raywise/geometry/triangle_view.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace raywise {
+
+void check(const CollapseParams& params) {
+    if (!(params.block_cost > 0) || !std::isfinite(params.block_cost))
+        throw Error("collapse: block_cost must be finite and > 0");
+    if (params.max_leaf_size < 1 || params.max_leaf_size > 64)
+        throw Error("collapse: max_leaf_size must be in [1, 64]");
+}
+
+namespace detail {
+namespace {
+
+constexpr std::size_t width = WideNode::width;
+constexpr std::size_t max_index = 0x7FFFFFFF;
+
+/// The cheapest ways to stand for one binary node and all below it.
+struct Plan {
+    std::array<float, width> cost; ///< [k]: as at most k + 1 slots of the node above
+    std::uint32_t prims;
+    bool as_leaf; ///< when it is one slot: a leaf is cheapest
+};
+
+/// Plans from the leaves up, as [Ylitie17] does.
+class Planner {
+public:
+    Planner(const Bvh& tree, const float* weights, const CollapseParams& params)
+        : tree_(tree), weights_(weights), params_(params), plans_(tree.nodes.size()) {
+        for (std::size_t i = tree.nodes.size(); i-- > 0;)
+            plan(i);
+    }
+
+    [[nodiscard]] const Plan& operator[](NodeId id) const { return plans_[to_index(id)]; }
+
+    [[nodiscard]] float weight(NodeId id) const { return weights_[to_index(id)]; }
+
+    /// The slots that a wide node made of `id` has, by falling weight; equal ones left to right.
+    struct Slots {
+        std::array<NodeId, width> ids;
+        std::size_t count = 0;
+    };
+
+    [[nodiscard]] Slots slots_of(NodeId id) const {
+        Slots slots;
+        if (tree_[id].is_leaf())
+            slots.ids[slots.count++] = id;
+        else
+            share(id, width, slots);
+        const auto end = slots.ids.begin() + static_cast<std::ptrdiff_t>(slots.count);
+        std::stable_sort(slots.ids.begin(), end, [&](NodeId a, NodeId b) {
+            return weight(a) > weight(b);
+        });
+        return slots;
+    }
+
+private:
+    /// The least cost of sharing k slots among the children; at how many for the left one.
+    struct Share {
+        float cost = std::numeric_limits<float>::infinity();
+        std::size_t left = 1;
+    };
+
+    [[nodiscard]] Share best_share(const Node& node, std::size_t k) const {
+        const Plan& left = plans_[to_index(node.left())];
+        const Plan& right = plans_[to_index(node.right())];
+        Share best;
+        for (std::size_t i = 1; i < k; ++i) {
+            const float cost = left.cost[i - 1] + right.cost[k - i - 1];
+            if (cost < best.cost) best = {cost, i};
+        }
+        return best;
+    }
+
+    void plan(std::size_t at) {
+        const Node& node = tree_.nodes[at];
+        Plan& plan = plans_[at];
+        if (node.is_leaf()) {
+            plan.prims = static_cast<std::uint32_t>(node.count());
+            plan.as_leaf = true;
+            plan.cost.fill(leaf_cost(at, plan.prims));
+            return;
+        }
+        plan.prims = plans_[to_index(node.left())].prims + plans_[to_index(node.right())].prims;
+        for (std::size_t k = 2; k <= width; ++k)
+            plan.cost[k - 1] = best_share(node, k).cost;
+        const float as_node = weights_[at] + plan.cost[width - 1];
+        const float as_leaf = plan.prims <= params_.max_leaf_size
+                                  ? leaf_cost(at, plan.prims)
+                                  : std::numeric_limits<float>::infinity();
+        plan.as_leaf = as_leaf <= as_node;
+        plan.cost[0] = std::min(as_leaf, as_node);
+        for (std::size_t k = 1; k < width; ++k)
+            plan.cost[k] = std::min(plan.cost[k], plan.cost[k - 1]);
+    }
+
+    [[nodiscard]] float leaf_cost(std::size_t at, std::uint32_t prims) const {
+        constexpr auto lanes = static_cast<std::uint32_t>(TriangleBlock::width);
+        const std::uint32_t blocks = (prims + lanes - 1) / lanes;
+        return weights_[at] * static_cast<float>(params_.block_cost) * static_cast<float>(blocks);
+    }
+
+    /// Puts into `slots` what stands for inner node `id` when it has k >= 2 slots and must use
+    /// more than one.
+    void share(NodeId id, std::size_t k, Slots& slots) const {
+        const Node& node = tree_[id];
+        const std::size_t left = best_share(node, k).left;
+        fill(node.left(), left, slots);
+        fill(node.right(), k - left, slots);
+    }
+
+    void fill(NodeId id, std::size_t k, Slots& slots) const {
+        const Plan& plan = plans_[to_index(id)];
+        while (k > 1 && plan.cost[k - 2] <= plan.cost[k - 1])
+            --k;
+        if (k == 1)
+            slots.ids[slots.count++] = id;
+        else
+            share(id, k, slots);
+    }
+
+    const Bvh& tree_;
+    const float* weights_;
+    const CollapseParams& params_;
+    LargeBuffer<Plan> plans_;
+};
+
+/// Writes what was planned, depth first.
+class Writer {
+public:
+    Writer(const Bvh& tree, const TriangleView& triangles, const Planner& plans)
+        : tree_(tree), triangles_(triangles), plans_(plans) {}
+
+    [[nodiscard]] WideBvh write() {
+        if (tree_.is_empty()) return {};
+        out_.bounds = tree_.root().box();
+        write_node(NodeId{0});
+        for (const TriangleBlock& block : out_.blocks)
+            for (std::size_t lane = 0; lane < TriangleBlock::width; ++lane) {
+                if (block.prims[lane] == no_prim) continue;
+                out_.bounds = unite(out_.bounds, bounds(block.triangle(lane)));
+                out_.largest_doubled_extent =
+                    std::max(out_.largest_doubled_extent, block.doubled_extents[lane]);
+            }
+        return std::move(out_);
+    }
+
+private:
+    std::size_t write_node(NodeId id) {
+        const Planner::Slots slots = plans_.slots_of(id);
+        const std::size_t at = out_.nodes.size();
+        if (at > max_index) throw Error("collapse: too many nodes");
+        out_.nodes.resize(at + 1);
+        for (std::size_t i = 0; i < width; ++i) {
+            if (i >= slots.count) {
+                out_.nodes[at].clear(i);
+                continue;
+            }
+            const NodeId child = slots.ids[i];
+            const WideRef ref = plans_[child].as_leaf ? WideRef::leaf(write_leaf(child))
+                                                      : WideRef::node(write_node(child));
+            out_.nodes[at].set(i, tree_[child].box(), ref);
+        }
+        return at;
+    }
+
+    std::size_t write_leaf(NodeId id) {
+        prims_.clear();
+        gather(id);
+        // A spatial split may have put a triangle into several of the nodes that became one leaf.
+        std::sort(prims_.begin(), prims_.end());
+        prims_.erase(std::unique(prims_.begin(), prims_.end()), prims_.end());
+        const std::size_t first = out_.blocks.size();
+        for (std::size_t i = 0; i < prims_.size(); i += TriangleBlock::width) {
+            if (out_.blocks.size() > max_index) throw Error("collapse: too many triangles");
+            TriangleBlock& block = out_.blocks.emplace_back();
+            block.unused = {};
+            block.is_last = i + TriangleBlock::width >= prims_.size() ? 1 : 0;
+            for (std::size_t lane = 0; lane < TriangleBlock::width; ++lane) {
+                if (i + lane < prims_.size())
+                    block.set(lane, triangles_[prims_[i + lane]], prims_[i + lane]);
+                else
+                    block.clear(lane);
+            }
+        }
+        return first;
+    }
+
+    void gather(NodeId id) {
+        const Node& node = tree_[id];
+        if (!node.is_leaf()) {
+            gather(node.left());
+            gather(node.right());
+            return;
+        }
+        for (const PrimId prim : tree_.prims_of(node))
+            prims_.push_back(prim);
+    }
+
+    const Bvh& tree_;
+    const TriangleView& triangles_;
+    const Planner& plans_;
+    WideBvh out_;
+    std::vector<PrimId> prims_;
+};
+
+} // namespace
+
+WideBvh collapse_weighed(
+    const Bvh& tree,
+    const TriangleView& triangles,
+    const float* weights,
+    const CollapseParams& params,
+    const Executor& /*executor*/
+) {
+    check(params);
+    const Planner plans(tree, weights, params);
+    return Writer(tree, triangles, plans).write();
+}
+
+} // namespace detail
+
+} // namespace raywise
