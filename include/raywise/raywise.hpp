@@ -38,11 +38,13 @@
 #include <raywise/bvh/statistics.hpp>                // IWYU pragma: export
 #include <raywise/bvh/validate.hpp>                  // IWYU pragma: export
 #include <raywise/bvh/walk.hpp>                      // IWYU pragma: export
+#include <raywise/bvh/wide_bvh.hpp>                  // IWYU pragma: export
 #include <raywise/core/error.hpp>                    // IWYU pragma: export
 #include <raywise/core/executor.hpp>                 // IWYU pragma: export
 #include <raywise/core/function_ref.hpp>             // IWYU pragma: export
 #include <raywise/core/hash.hpp>                     // IWYU pragma: export
 #include <raywise/core/ids.hpp>                      // IWYU pragma: export
+#include <raywise/core/large_vector.hpp>             // IWYU pragma: export
 #include <raywise/core/nearest_word.hpp>             // IWYU pragma: export
 #include <raywise/core/progress.hpp>                 // IWYU pragma: export
 #include <raywise/core/rng.hpp>                      // IWYU pragma: export
@@ -95,6 +97,7 @@
 #include <raywise/io/save_scene.hpp>                 // IWYU pragma: export
 #include <raywise/io/tree_file.hpp>                  // IWYU pragma: export
 #include <raywise/optimize/child_order.hpp>          // IWYU pragma: export
+#include <raywise/optimize/collapse.hpp>             // IWYU pragma: export
 #include <raywise/optimize/depth_first.hpp>          // IWYU pragma: export
 #include <raywise/pencil/pencil.hpp>                 // IWYU pragma: export
 #include <raywise/scene/generate.hpp>                // IWYU pragma: export
@@ -119,3 +122,4 @@
 #include <raywise/trace/observer.hpp>                // IWYU pragma: export
 #include <raywise/trace/traverse.hpp>                // IWYU pragma: export
 #include <raywise/trace/triangles.hpp>               // IWYU pragma: export
+#include <raywise/trace/wide.hpp>                    // IWYU pragma: export

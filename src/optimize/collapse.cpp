@@ -60,7 +60,7 @@ public:
 
     [[nodiscard]] Slots slots_of(NodeId id) const {
         Slots slots;
-        if (tree_[id].is_leaf())
+        if ((*this)[id].as_leaf) // only the root: a leaf needs a node above
             slots.ids[slots.count++] = id;
         else
             share(id, width, slots);
@@ -167,7 +167,7 @@ private:
         const Planner::Slots slots = plans_.slots_of(id);
         const std::size_t at = out_.nodes.size();
         if (at > max_index) throw Error("collapse: too many nodes");
-        out_.nodes.resize(at + 1);
+        out_.nodes.emplace_back(WideNode{});
         for (std::size_t i = 0; i < width; ++i) {
             if (i >= slots.count) {
                 out_.nodes[at].clear(i);
@@ -190,8 +190,7 @@ private:
         const std::size_t first = out_.blocks.size();
         for (std::size_t i = 0; i < prims_.size(); i += TriangleBlock::width) {
             if (out_.blocks.size() > max_index) throw Error("collapse: too many triangles");
-            TriangleBlock& block = out_.blocks.emplace_back();
-            block.unused = {};
+            TriangleBlock& block = out_.blocks.emplace_back(TriangleBlock{});
             block.is_last = i + TriangleBlock::width >= prims_.size() ? 1 : 0;
             for (std::size_t lane = 0; lane < TriangleBlock::width; ++lane) {
                 if (i + lane < prims_.size())

@@ -57,6 +57,7 @@ struct alignas(64) WideNode {
     std::array<std::array<std::array<float, width>, 2>, 3>
         planes; ///< by axis, then lower and upper, then slot
     std::array<WideRef, width> children;
+    std::array<std::uint32_t, 8> unused; ///< 0
 
     void set(std::size_t slot, const Aabb& box, WideRef child) {
         for (int axis = 0; axis < 3; ++axis) {
@@ -93,7 +94,7 @@ struct alignas(64) TriangleBlock {
     std::array<PrimId, width> prims;
     std::array<float, width> doubled_extents; ///< see doubled_extent
     std::uint32_t is_last;                    ///< of its leaf: 1; 0 when the next block belongs too
-    std::array<std::uint32_t, 3> unused;
+    std::array<std::uint32_t, 3> unused; ///< 0
 
     void set(std::size_t lane, const Triangle& triangle, PrimId prim);
     void clear(std::size_t lane);

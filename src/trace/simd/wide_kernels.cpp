@@ -123,9 +123,16 @@ HWY_INLINE Candidates meet_block(const WideRay& ray, const TriangleBlock& block,
         const auto by = sheared(1, ray.y, ray.origin_y, ray.shear_y, bz);
         const auto cx = sheared(2, ray.x, ray.origin_x, ray.shear_x, cz);
         const auto cy = sheared(2, ray.y, ray.origin_y, ray.shear_y, cz);
-        const auto u = hn::MulSub(bx, cy, hn::Mul(by, cx));
-        const auto v = hn::MulSub(cx, ay, hn::Mul(cy, ax));
-        const auto w = hn::MulSub(ax, by, hn::Mul(ay, bx));
+        // Fast: rounded alike on both sides of an edge, so that noise does not make hits of points.
+        const auto edge = [](auto px, auto qy, auto py, auto qx) HWY_ATTR {
+            if constexpr (mode == TraceMode::fast)
+                return hn::Sub(hn::Mul(px, qy), hn::Mul(py, qx));
+            else
+                return hn::MulSub(px, qy, hn::Mul(py, qx));
+        };
+        const auto u = edge(bx, cy, by, cx);
+        const auto v = edge(cx, ay, cy, ax);
+        const auto w = edge(ax, by, ay, bx);
         const auto least = hn::Min(hn::Min(u, v), w);
         const auto greatest = hn::Max(hn::Max(u, v), w);
         const auto prims = hn::Load(
@@ -188,8 +195,13 @@ HWY_INLINE Candidates meet_block(const WideRay& ray, const TriangleBlock& block,
             const auto outside =
                 hn::Or(hn::Gt(low, hn::Set(d, limit)), hn::Lt(high, hn::Set(d, ray.t_min)));
             out.possible |= bits_of(d, hn::AndNot(outside, near_inside)) << first;
+            // Vertices may be farther from the ray than those of a triangle that it hits; within
+            // twice that distance, twice the error and some more is enough.
+            const auto is_close = hn::Le(hn::Max(hn::Abs(ax), hn::Abs(ay)), extent);
+            const auto most_error = hn::Mul(hn::Set(d, 4.0F), error);
             const auto surely_inside = hn::And(
-                near_inside, hn::Or(hn::Gt(least, error), hn::Lt(greatest, negative_error))
+                hn::And(near_inside, is_close),
+                hn::Or(hn::Gt(least, most_error), hn::Lt(greatest, hn::Neg(most_error)))
             );
             const auto surely_between =
                 hn::And(hn::Ge(low, hn::Set(d, ray.t_min)), hn::Le(high, hn::Set(d, limit)));
