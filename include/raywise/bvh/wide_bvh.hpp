@@ -94,7 +94,7 @@ struct alignas(64) TriangleBlock {
     std::array<PrimId, width> prims;
     std::array<float, width> doubled_extents; ///< see doubled_extent
     std::uint32_t is_last;                    ///< of its leaf: 1; 0 when the next block belongs too
-    std::array<std::uint32_t, 3> unused; ///< 0
+    std::array<std::uint32_t, 3> unused;      ///< 0
 
     void set(std::size_t lane, const Triangle& triangle, PrimId prim);
     void clear(std::size_t lane);
