@@ -100,6 +100,8 @@
 #include <raywise/optimize/collapse.hpp>             // IWYU pragma: export
 #include <raywise/optimize/depth_first.hpp>          // IWYU pragma: export
 #include <raywise/pencil/pencil.hpp>                 // IWYU pragma: export
+#include <raywise/pencil/pencil_grid.hpp>            // IWYU pragma: export
+#include <raywise/pencil/pencil_grid_params.hpp>     // IWYU pragma: export
 #include <raywise/scene/generate.hpp>                // IWYU pragma: export
 #include <raywise/scene/scene.hpp>                   // IWYU pragma: export
 #include <raywise/toplevel/accelerator.hpp>          // IWYU pragma: export

@@ -1,0 +1,291 @@
+#include "pencil/build_face.hpp"
+#include "pencil/face_pieces.hpp"
+#include "pencil/grid_data.hpp"
+#include "pencil/kernels.hpp"
+
+#include <raywise/core/error.hpp>
+#include <raywise/pencil/pencil_grid.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace raywise {
+
+namespace {
+
+using namespace pencil_detail;
+
+constexpr std::size_t chunk = 1 << 13;
+
+/// The free part of the cap on a grid's bytes.
+constexpr std::size_t least_bytes = 1 << 16;
+
+/// How near to the apex, as a share of the reach, triangles are listed apart: nearer ones could be
+/// met by rays that stray too far from their places.
+constexpr double near_share = 0x1p-17;
+
+struct Ids {
+    std::vector<PrimId> ids; ///< of finite triangles, ascending
+    double greatest = 0;     ///< magnitude of a coordinate
+};
+
+/// Copies the triangles into records.
+Ids copy(const TriangleView& triangles, float* records, const Executor& executor) {
+    struct Part {
+        std::vector<PrimId> ids;
+        float greatest = 0;
+    };
+
+    const std::size_t count = triangles.size();
+    std::vector<Part> parts((count + chunk - 1) / chunk);
+    executor.for_each_chunk(count, chunk, [&](std::size_t begin, std::size_t end) {
+        Part& part = parts[begin / chunk];
+        part.ids.reserve(end - begin);
+        for (std::size_t i = begin; i < end; ++i) {
+            const Triangle t = triangles[to_prim(i)];
+            float* to = records + i * record_floats;
+            for (int axis = 0; axis < 3; ++axis) {
+                to[3 * axis] = t.v0[axis];
+                to[3 * axis + 1] = t.v1[axis];
+                to[3 * axis + 2] = t.v2[axis];
+            }
+            if (!is_finite(t.v0) || !is_finite(t.v1) || !is_finite(t.v2)) continue;
+            for (std::size_t k = 0; k < record_floats; ++k)
+                part.greatest = std::max(part.greatest, std::abs(to[k]));
+            part.ids.push_back(to_prim(i));
+        }
+    });
+    std::memset(records + count * record_floats, 0, slack_bytes);
+    Ids all;
+    all.ids.reserve(count);
+    for (const Part& part : parts) {
+        all.ids.insert(all.ids.end(), part.ids.begin(), part.ids.end());
+        all.greatest = std::max(all.greatest, static_cast<double>(part.greatest));
+    }
+    return all;
+}
+
+/// The triangles whose boxes meet the cube of half side `nearest` around the apex.
+std::vector<PrimId> find_near(const Records& records, Vec3d apex, double nearest) {
+    std::vector<PrimId> near;
+    const double half = nearest * (1 + 0x1p-3);
+    for (const PrimId id : records.ids) {
+        const float* record = records.values + to_index(id) * record_floats;
+        bool meets = true;
+        for (int axis = 0; axis < 3; ++axis) {
+            const auto [low, high] =
+                std::minmax({record[3 * axis], record[3 * axis + 1], record[3 * axis + 2]});
+            meets = meets && static_cast<double>(low) - apex[axis] <= half &&
+                    static_cast<double>(high) - apex[axis] >= -half;
+        }
+        if (meets) near.push_back(id);
+    }
+    return near;
+}
+
+/// Coordinates so large that the filters might overflow are left to exact arithmetic.
+float doubt_of(double greatest) {
+    return greatest < 0x1p50 ? 0x1p-120F : std::numeric_limits<float>::infinity();
+}
+
+using Faces = std::array<std::unique_ptr<BuiltFace>, 6>;
+
+/// The faces of a pencil before their cells are chosen.
+struct RawFaces {
+    std::array<std::vector<RawPiece>, 6> pieces;
+    std::array<FaceMap, 6> maps{};
+};
+
+RawFaces raw_faces(PencilGrid::Data& data, const Records& records, const Executor& executor) {
+    RawFaces faces;
+    if (data.pencil.kind() == Pencil::Kind::parallel) {
+        const Vec3 direction = data.pencil.direction();
+        const int axis = dominant_axis(direction);
+        FaceMap& map = faces.maps[0];
+        map.axis = axis;
+        map.axis_u = (axis + 1) % 3;
+        map.axis_v = (axis + 2) % 3;
+        const Vec3d d = to_double(direction);
+        map.sign = d[axis] > 0 ? 1 : -1;
+        map.slope_u = d[map.axis_u] / d[axis];
+        map.slope_v = d[map.axis_v] / d[axis];
+        map.reach = 256 * records.greatest;
+        // Without triangles nothing is too far away.
+        if (records.ids.empty()) map.reach = std::numeric_limits<double>::infinity();
+        data.doubt = doubt_of(records.greatest);
+        faces.pieces[0] = parallel_pieces(records, direction, executor);
+        return faces;
+    }
+    const Vec3d apex = data.apex;
+    double farthest = 0;
+    for (const PrimId id : records.ids) {
+        const float* record = records.values + to_index(id) * record_floats;
+        for (int k = 0; k < 9; ++k)
+            farthest = std::max(farthest, std::abs(static_cast<double>(record[k]) - apex[k / 3]));
+    }
+    const double reach =
+        records.ids.empty() ? std::numeric_limits<double>::infinity() : 4 * farthest;
+    data.doubt = doubt_of(
+        std::max({records.greatest, farthest, std::abs(apex.x), std::abs(apex.y), std::abs(apex.z)})
+    );
+    const double nearest = std::max(reach * near_share, 0x1p-140);
+    data.near = find_near(records, apex, nearest);
+    for (int axis = 0; axis < 3; ++axis)
+        for (const int side : {0, 1}) {
+            const auto face = static_cast<std::size_t>(2 * axis + side);
+            FaceMap& map = faces.maps[face];
+            map.axis = axis;
+            map.axis_u = (axis + 1) % 3;
+            map.axis_v = (axis + 2) % 3;
+            map.sign = side == 0 ? 1 : -1;
+            map.reach = reach;
+            faces.pieces[face] = radial_pieces(
+                records, data.pencil.apex(), axis, side == 0 ? 1 : -1, nearest, reach, executor
+            );
+        }
+    return faces;
+}
+
+std::size_t bytes(const Faces& faces) {
+    std::size_t total = 0;
+    for (const auto& face : faces)
+        if (face) total += face->cells.size() * sizeof(Cell) + face->list_bytes + 16;
+    return total;
+}
+
+/// Puts all faces' cells, then all lists into one piece of memory.
+void assemble(
+    PencilGrid::Data& data,
+    const Faces& faces,
+    const RawFaces& raw,
+    const Executor& executor
+) {
+    std::size_t cell_bytes = 0;
+    for (const auto& face : faces)
+        if (face) cell_bytes += (face->cells.size() * sizeof(Cell) + 15) / 16 * 16;
+    std::size_t total = cell_bytes;
+    for (const auto& face : faces)
+        if (face) total += face->list_bytes;
+    data.memory.emplace(total + slack_bytes);
+    data.memory_bytes = total;
+    std::byte* memory = data.memory->get();
+    std::memset(memory + total, 0, slack_bytes);
+    data.lists = memory + cell_bytes;
+
+    std::size_t cells_at = 0;
+    std::size_t lists_at = 0;
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+        data.faces[f].map = raw.maps[f];
+        if (!faces[f]) continue;
+        BuiltFace& built = *faces[f];
+        Face& face = data.faces[f];
+        face = built.face;
+        std::vector<std::size_t> starts;
+        for (const auto& part : built.parts) {
+            starts.push_back(lists_at);
+            lists_at += part->lists().size();
+        }
+        auto* cells = reinterpret_cast<Cell*>(memory + cells_at);
+        face.cells = cells;
+        executor.for_each_chunk(built.parts.size(), 1, [&](std::size_t i, std::size_t) {
+            const auto words = static_cast<std::uint32_t>(starts[i] / 16);
+            built.parts[i]->write(memory + cell_bytes + starts[i], words);
+            const std::size_t end = std::min(built.cells.size(), (i + 1) * built.part_cells);
+            for (std::size_t k = i * built.part_cells; k < end; ++k) {
+                Cell cell = built.cells[k];
+                if (cell.near != Cell::never) cell.link += words;
+                std::memcpy(&cells[k], &cell, sizeof cell);
+            }
+        });
+        const std::size_t size = built.cells.size() * sizeof(Cell);
+        const std::size_t whole = (size + 15) / 16 * 16;
+        std::memset(memory + cells_at + size, 0, whole - size);
+        cells_at += whole;
+    }
+}
+
+void add(PencilGridStatistics& to, const PencilGridStatistics& from) {
+    to.faces += from.faces;
+    to.top_cells += from.top_cells;
+    to.leaves += from.leaves;
+    to.empty += from.empty;
+    to.splits += from.splits;
+    to.references += from.references;
+    to.culled += from.culled;
+}
+
+} // namespace
+
+void check(const PencilGridParams& params) {
+    if (!(params.cell_size >= 1 && params.cell_size <= 256))
+        throw Error("cell_size must be in [1, 256]");
+    if (params.leaf_size < 4 || params.leaf_size > 4096)
+        throw Error("leaf_size must be in [4, 4096]");
+    if (!(params.bytes_per_triangle >= 64)) throw Error("bytes_per_triangle must be at least 64");
+}
+
+PencilGrid build_pencil_grid(
+    const TriangleView& triangles,
+    const Pencil& pencil,
+    const PencilGridParams& params,
+    const Executor& executor
+) {
+    check(params);
+    const std::size_t count = triangles.size();
+    if (count > 0x7FFFFFFF) throw Error("pencil grid: more than 2^31 triangles");
+    auto data = std::make_unique<PencilGrid::Data>(pencil);
+    data->kernels = &best_kernels();
+    if (pencil.kind() == Pencil::Kind::radial) data->apex = to_double(pencil.apex());
+    data->record_count = count;
+    data->record_memory.emplace(count * record_floats + slack_bytes / sizeof(float));
+    data->records = data->record_memory->get();
+    const Ids ids = copy(triangles, data->record_memory->get(), executor);
+    const Records records{data->records, ids.ids, ids.greatest};
+
+    const RawFaces raw = raw_faces(*data, records, executor);
+    const double cap = params.bytes_per_triangle * static_cast<double>(count) + least_bytes;
+    const double free = cap - static_cast<double>(count * record_floats * sizeof(float));
+    // References may be dropped later, and others be made by splits.
+    const auto most_references = static_cast<std::size_t>(free / 4);
+    PencilGridParams coarser = params;
+    double coarsening = 1;
+    Faces faces;
+    for (;;) {
+        // One cell a face: there is nothing coarser.
+        const bool is_last = coarsening > 0x1p32;
+        bool fits = true;
+        for (std::size_t f = 0; f < faces.size() && fits; ++f) {
+            faces[f].reset();
+            if (raw.pieces[f].empty()) continue;
+            faces[f] = build_face(
+                raw.pieces[f],
+                raw.maps[f],
+                pencil.kind() == Pencil::Kind::radial,
+                ids.greatest,
+                coarser,
+                coarsening,
+                is_last ? std::numeric_limits<std::size_t>::max() : most_references,
+                executor
+            );
+            fits = faces[f] != nullptr;
+        }
+        if (is_last || (fits && static_cast<double>(bytes(faces)) <= free)) break;
+        ++data->statistics.coarsened;
+        coarsening *= 2;
+        coarser.leaf_size = std::min(2 * coarser.leaf_size, 1U << 24U);
+    }
+    assemble(*data, faces, raw, executor);
+    for (const auto& face : faces)
+        if (face) add(data->statistics, face->statistics);
+    data->statistics.near = data->near.size();
+    return PencilGrid(std::move(data));
+}
+
+} // namespace raywise

@@ -1,0 +1,236 @@
+#include "pencil/cell_builder.hpp"
+#include "pencil/face_map.hpp"
+
+#include <raywise/core/error.hpp>
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <tuple>
+
+namespace raywise::pencil_detail {
+
+namespace {
+
+constexpr std::int32_t never = std::numeric_limits<std::int32_t>::max();
+
+/// Splitting pays when the children have less than this share of 16 times the references.
+constexpr double worthwhile_share = 0.5;
+
+std::size_t level_of(int shift) {
+    return static_cast<std::size_t>((top_shift - shift) / split_bits);
+}
+
+} // namespace
+
+Cell CellBuilder::build(std::span<const std::uint32_t> pieces, const Window& window, int shift) {
+    std::vector<Reference>& references = references_[level_of(shift)];
+    references.clear();
+    for (const std::uint32_t index : pieces) {
+        const Piece& piece = pieces_[index];
+        const Footprint place = footprint(piece, window);
+        if (place.least_u > place.greatest_u) continue;
+        double least = place.least_key;
+        double greatest = place.greatest_key;
+        if (is_radial_) {
+            // The keys were rounded to float.
+            least = -1 / least * (1 - 0x1p-20);
+            greatest = -1 / greatest * (1 + 0x1p-20);
+        }
+        references.push_back(
+            {place,
+             std::max(depth_units(map_, least) - 1, 0),
+             depth_units(map_, greatest) + 1,
+             index,
+             piece.prim}
+        );
+    }
+    Cell cell;
+    if (references.empty()) {
+        ++statistics_.empty;
+        return cell;
+    }
+    const std::int32_t cover = cull(references);
+    if (cover != never) cell.cover = static_cast<std::uint16_t>(cover);
+    std::int32_t near = never;
+    for (const Reference& reference : references)
+        near = std::min(near, reference.least);
+    cell.near = static_cast<std::uint16_t>(near >> 8);
+    if (references.size() > params_.leaf_size && shift > place_bits &&
+        split(references, window, shift, cell))
+        return cell;
+    add_list(references, window, shift, cell);
+    return cell;
+}
+
+/// Drops what two triangles that fill the window hide; returns their depth in 256 units, or never.
+std::int32_t CellBuilder::cull(std::vector<Reference>& references) {
+    // One of the two may be the triangle that a ray starts on and does not hit.
+    std::int32_t first = never;
+    std::int32_t second = never;
+    PrimId first_prim = no_prim;
+    for (const Reference& reference : references) {
+        if (!reference.place.fills) continue;
+        if (reference.prim == first_prim) {
+            first = std::min(first, reference.greatest);
+        } else if (reference.greatest < first) {
+            second = first;
+            first = reference.greatest;
+            first_prim = reference.prim;
+        } else {
+            second = std::min(second, reference.greatest);
+        }
+    }
+    if (second == never) return never;
+    const std::int32_t cover = second >> 8;
+    const auto is_hidden = [&](const Reference& reference) {
+        return (reference.least >> 8) > cover;
+    };
+    const auto kept = std::remove_if(references.begin(), references.end(), is_hidden);
+    statistics_.culled += static_cast<std::size_t>(references.end() - kept);
+    references.erase(kept, references.end());
+    return cover;
+}
+
+bool CellBuilder::split(
+    const std::vector<Reference>& references,
+    const Window& window,
+    int shift,
+    Cell& cell
+) {
+    const int child_shift = shift - split_bits;
+    auto& lists = child_pieces_[level_of(shift)];
+    for (auto& list : lists)
+        list.clear();
+    std::size_t total = 0;
+    for (const Reference& reference : references) {
+        const Footprint& place = reference.place;
+        const std::int32_t last_row = (place.greatest_v - window.first_v) >> child_shift;
+        const std::int32_t last_column = (place.greatest_u - window.first_u) >> child_shift;
+        for (auto row = (place.least_v - window.first_v) >> child_shift; row <= last_row; ++row)
+            for (auto column = (place.least_u - window.first_u) >> child_shift;
+                 column <= last_column;
+                 ++column) {
+                lists[static_cast<std::size_t>(row * 4 + column)].push_back(reference.piece);
+                ++total;
+            }
+    }
+    const auto most = worthwhile_share * children * static_cast<double>(references.size());
+    if (static_cast<double>(total) > most) return false;
+
+    ++statistics_.splits;
+    const std::size_t at = grow(children * sizeof(Cell));
+    splits_.push_back(at);
+    cell.link = Cell::split_mark | static_cast<std::uint32_t>(at / 16);
+    for (std::size_t i = 0; i < children; ++i) {
+        const auto row = static_cast<std::int32_t>(i / 4);
+        const auto column = static_cast<std::int32_t>(i % 4);
+        const Window part{
+            window.first_u + (column << child_shift),
+            window.first_v + (row << child_shift),
+            std::int32_t{1} << child_shift
+        };
+        const Cell child = build(lists[i], part, child_shift);
+        std::memcpy(lists_.data() + at + i * sizeof(Cell), &child, sizeof child);
+    }
+    return true;
+}
+
+/// One reference for each triangle.
+void CellBuilder::merge_parts(std::vector<Reference>& references) const {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < references.size(); ++i) {
+        const Reference& reference = references[i];
+        const auto end = references.begin() + static_cast<std::ptrdiff_t>(kept);
+        const auto other = pieces_[reference.piece].is_part
+                               ? std::find_if(
+                                     references.begin(),
+                                     end,
+                                     [&](const Reference& r) { return r.prim == reference.prim; }
+                                 )
+                               : end;
+        if (other == end) {
+            references[kept++] = reference;
+            continue;
+        }
+        Footprint& place = other->place;
+        place.least_u = std::min(place.least_u, reference.place.least_u);
+        place.greatest_u = std::max(place.greatest_u, reference.place.greatest_u);
+        place.least_v = std::min(place.least_v, reference.place.least_v);
+        place.greatest_v = std::max(place.greatest_v, reference.place.greatest_v);
+        other->least = std::min(other->least, reference.least);
+    }
+    references.resize(kept);
+}
+
+void CellBuilder::add_list(
+    std::vector<Reference>& references,
+    const Window& window,
+    int shift,
+    Cell& cell
+) {
+    if (is_radial_) merge_parts(references);
+    const std::size_t count = references.size();
+    if (count > ListHead::most_references) throw Error("pencil grid: too many triangles in a cell");
+    std::sort(references.begin(), references.end(), [](const Reference& a, const Reference& b) {
+        return std::tie(a.least, a.prim) < std::tie(b.least, b.prim);
+    });
+    const std::int32_t base = references.front().least;
+    int depth_shift = 0;
+    while (((references.back().least - base) >> depth_shift) > 255)
+        ++depth_shift;
+
+    ++statistics_.leaves;
+    statistics_.references += count;
+    const std::size_t at = grow(list_bytes(count));
+    cell.link = static_cast<std::uint32_t>(at / 16);
+    const ListHead head{
+        base,
+        static_cast<std::uint32_t>(count) | static_cast<std::uint32_t>(depth_shift) << 26U |
+            (cell.cover != Cell::never ? 1U << 31U : 0U)
+    };
+    std::byte* to = lists_.data() + at;
+    std::memcpy(to, &head, sizeof head);
+    to += sizeof head;
+    const auto byte = [](std::int32_t value, int places) {
+        return static_cast<std::byte>((value >> places) ^ 0x80);
+    };
+    const int places = shift - place_bits;
+    for (std::size_t first = 0; first < count; first += chunk_size) {
+        const std::size_t size = std::min(chunk_size, count - first);
+        const std::size_t stride = padded(size);
+        for (std::size_t i = 0; i < size; ++i) {
+            const Reference& reference = references[first + i];
+            const Footprint& place = reference.place;
+            to[i] = byte(place.least_u - window.first_u, places);
+            to[stride + i] = byte(place.greatest_u - window.first_u, places);
+            to[2 * stride + i] = byte(place.least_v - window.first_v, places);
+            to[3 * stride + i] = byte(place.greatest_v - window.first_v, places);
+            to[4 * stride + i] = byte(reference.least - base, depth_shift);
+            std::memcpy(to + 5 * stride + 4 * i, &reference.prim, sizeof(PrimId));
+        }
+        to += chunk_bytes(size);
+    }
+}
+
+std::size_t CellBuilder::grow(std::size_t bytes) {
+    const std::size_t at = lists_.size();
+    if (at + bytes > std::size_t{Cell::split_mark} * 16) throw Error("pencil grid: too large");
+    lists_.resize(at + bytes);
+    return at;
+}
+
+void CellBuilder::write(std::byte* to, std::uint32_t words) const {
+    if (lists_.empty()) return;
+    std::memcpy(to, lists_.data(), lists_.size());
+    for (const std::size_t at : splits_)
+        for (std::size_t i = 0; i < children; ++i) {
+            Cell child;
+            std::byte* place = to + at + i * sizeof(Cell);
+            std::memcpy(&child, place, sizeof child);
+            if (child.near != Cell::never) child.link += words;
+            std::memcpy(place, &child, sizeof child);
+        }
+}
+
+} // namespace raywise::pencil_detail

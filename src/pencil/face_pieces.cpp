@@ -1,0 +1,154 @@
+#include "pencil/face_pieces.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace raywise::pencil_detail {
+
+namespace {
+
+constexpr std::size_t chunk = 1 << 13;
+
+/// Vertex `corner` of a record.
+Vec3d vertex(const Records& records, PrimId id, std::size_t corner) {
+    const float* record = records.values + to_index(id) * record_floats;
+    return to_double(Vec3{record[corner], record[3 + corner], record[6 + corner]});
+}
+
+/// Calls `add(id, pieces)` for every triangle, in parallel; returns all pieces in order.
+template <class Add>
+std::vector<RawPiece> collect(const Records& records, const Executor& executor, const Add& add) {
+    const std::size_t count = records.ids.size();
+    std::vector<std::vector<RawPiece>> parts((count + chunk - 1) / chunk);
+    executor.for_each_chunk(count, chunk, [&](std::size_t begin, std::size_t end) {
+        std::vector<RawPiece>& part = parts[begin / chunk];
+        for (std::size_t i = begin; i < end; ++i)
+            add(records.ids[i], part);
+    });
+    std::vector<std::size_t> starts(parts.size() + 1);
+    for (std::size_t i = 0; i < parts.size(); ++i)
+        starts[i + 1] = starts[i] + parts[i].size();
+    std::vector<RawPiece> pieces(starts.back());
+    executor.for_each_chunk(parts.size(), 1, [&](std::size_t i, std::size_t) {
+        std::copy(
+            parts[i].begin(),
+            parts[i].end(),
+            pieces.begin() + static_cast<std::ptrdiff_t>(starts[i])
+        );
+    });
+    return pieces;
+}
+
+/// A triangle cut by five planes has at most eight corners.
+struct Polygon {
+    std::array<Vec3d, 9> corners;
+    std::size_t count = 0;
+
+    void add(Vec3d corner) { corners[count++] = corner; }
+};
+
+/// The part with dot(normal, corner) >= limit. [Sutherland74]
+void cut(Polygon& polygon, Vec3d normal, double limit) {
+    Polygon kept;
+    for (std::size_t i = 0; i < polygon.count; ++i) {
+        const Vec3d a = polygon.corners[i];
+        const Vec3d b = polygon.corners[i + 1 == polygon.count ? 0 : i + 1];
+        const double inside_a = dot(normal, a) - limit;
+        const double inside_b = dot(normal, b) - limit;
+        if (inside_a >= 0) kept.add(a);
+        if ((inside_a > 0 && inside_b < 0) || (inside_a < 0 && inside_b > 0))
+            kept.add(a + (b - a) * (inside_a / (inside_a - inside_b)));
+    }
+    polygon = kept;
+}
+
+} // namespace
+
+std::vector<RawPiece>
+parallel_pieces(const Records& records, Vec3 direction, const Executor& executor) {
+    const int axis = dominant_axis(direction);
+    const int axis_u = (axis + 1) % 3;
+    const int axis_v = (axis + 2) % 3;
+    const Vec3d d = to_double(direction);
+    const double slope_u = d[axis_u] / d[axis];
+    const double slope_v = d[axis_v] / d[axis];
+    const double sign = d[axis] > 0 ? 1 : -1;
+    return collect(records, executor, [&](PrimId id, std::vector<RawPiece>& pieces) {
+        RawPiece piece{};
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Vec3d p = vertex(records, id, i);
+            piece.u[i] = p[axis_u] - p[axis] * slope_u;
+            piece.v[i] = p[axis_v] - p[axis] * slope_v;
+            piece.key[i] = static_cast<float>(p[axis] * sign);
+        }
+        piece.prim = id;
+        pieces.push_back(piece);
+    });
+}
+
+std::vector<RawPiece> radial_pieces(
+    const Records& records,
+    Vec3 apex,
+    int axis,
+    int sign,
+    double nearest,
+    double reach,
+    const Executor& executor
+) {
+    const int axis_u = (axis + 1) % 3;
+    const int axis_v = (axis + 2) % 3;
+    const Vec3d eye = to_double(apex);
+    // Rays of a face may stray beyond its edges.
+    constexpr double edge = 1 + 0x1p-4;
+    return collect(records, executor, [&](PrimId id, std::vector<RawPiece>& pieces) {
+        Polygon polygon;
+        bool is_outside = true;
+        bool is_inside = true;
+        std::array<bool, 4> beyond{true, true, true, true};
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Vec3d p = vertex(records, id, i) - eye;
+            const Vec3d q{p[axis_u], p[axis_v], p[axis] * sign};
+            const double limit = q.z * edge;
+            polygon.add(q);
+            is_outside = is_outside && q.z < nearest;
+            is_inside =
+                is_inside && q.z >= nearest && std::abs(q.x) <= limit && std::abs(q.y) <= limit;
+            beyond[0] = beyond[0] && q.x > limit;
+            beyond[1] = beyond[1] && -q.x > limit;
+            beyond[2] = beyond[2] && q.y > limit;
+            beyond[3] = beyond[3] && -q.y > limit;
+        }
+        if (is_outside || beyond[0] || beyond[1] || beyond[2] || beyond[3]) return;
+        if (!is_inside) {
+            cut(polygon, {0, 0, 1}, nearest);
+            cut(polygon, {-1, 0, edge}, 0);
+            cut(polygon, {1, 0, edge}, 0);
+            cut(polygon, {0, -1, edge}, 0);
+            cut(polygon, {0, 1, edge}, 0);
+        }
+        if (polygon.count < 3) return;
+        double least = polygon.corners[0].z;
+        for (std::size_t i = 1; i < polygon.count; ++i)
+            least = std::min(least, polygon.corners[i].z);
+        least = std::max(least, nearest);
+        for (std::size_t i = 2; i < polygon.count; ++i) {
+            RawPiece piece{};
+            const std::array<std::size_t, 3> corners{0, i - 1, i};
+            for (std::size_t k = 0; k < 3; ++k) {
+                const Vec3d& q = polygon.corners[corners[k]];
+                const double inverse = 1 / std::max(q.z, nearest);
+                piece.u[k] = q.x * inverse;
+                piece.v[k] = q.y * inverse;
+                piece.key[k] = static_cast<float>(-inverse);
+            }
+            piece.margin = static_cast<float>(0x1p-22 * reach / least);
+            piece.prim = id;
+            piece.is_part = polygon.count > 3;
+            pieces.push_back(piece);
+        }
+    });
+}
+
+} // namespace raywise::pencil_detail

@@ -1,0 +1,130 @@
+// The layout of a pencil grid: what queries read.
+#pragma once
+
+#include <raywise/core/large_buffer.hpp>
+#include <raywise/pencil/pencil_grid.hpp>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <vector>
+
+namespace raywise::pencil_detail {
+
+/// A cell's side is 2^16 units at the top and a quarter of its parent's below. Eight more bits tell
+/// where in a leaf something is, so four levels of splits are the most.
+inline constexpr int top_shift = 16;
+inline constexpr int place_bits = 8;
+inline constexpr int split_bits = 2;
+inline constexpr std::size_t children = 16;
+inline constexpr std::int32_t most_cells_a_side = 4096;
+
+/// Depths, in units: [0, deepest]. Geometry has [shallowest, deepest], so that what lies before it
+/// is below, and `cover` and `near` of 16 bits can say "never".
+inline constexpr std::int32_t shallowest = 256;
+inline constexpr std::int32_t deepest = (1 << 24) - 257;
+
+/// A cell of the top grid, or one of 16 siblings. Depths in 256 units. A query that ends before
+/// `near` meets nothing; one that comes from the emitter and ends beyond `cover` meets at least two
+/// triangles. The lists are complete up to `cover`, itself included.
+struct Cell {
+    std::uint32_t link = 0; ///< where its list or children are, in 16 bytes; with `split_mark`
+    std::uint16_t near = never;
+    std::uint16_t cover = never;
+
+    static constexpr std::uint16_t never = 0xFFFF;
+    static constexpr std::uint32_t split_mark = 0x80000000U;
+};
+static_assert(sizeof(Cell) == 8);
+
+/// The head of a list; chunks of 16 references follow, the last one shorter, a multiple of 4. A
+/// chunk of n is: n bytes each of least and greatest u, least and greatest v, least depth; n ids.
+/// Bytes are places in the cell less 128, so that signed comparisons order them. References ascend
+/// by least depth.
+struct ListHead {
+    std::int32_t base;  ///< least depth of all, in units
+    std::uint32_t bits; ///< references, shift << 26, is_culled << 31
+
+    static constexpr std::size_t most_references = (1U << 26U) - 1;
+
+    [[nodiscard]] std::size_t count() const { return bits & 0x3FFFFFFU; }
+
+    /// A depth byte counts 2^shift units from base.
+    [[nodiscard]] int shift() const { return static_cast<int>((bits >> 26U) & 31U); }
+
+    /// Whether references behind the cell's `cover` were dropped.
+    [[nodiscard]] bool is_culled() const { return (bits >> 31U) != 0; }
+};
+static_assert(sizeof(ListHead) == 8);
+
+inline constexpr std::size_t chunk_size = 16;
+
+[[nodiscard]] constexpr std::size_t padded(std::size_t count) {
+    return (count + 3) / 4 * 4;
+}
+
+/// Bytes from one chunk of `count` references to the next.
+[[nodiscard]] constexpr std::size_t chunk_bytes(std::size_t count) {
+    return 9 * padded(count);
+}
+
+/// Bytes of a list, a multiple of 16.
+[[nodiscard]] constexpr std::size_t list_bytes(std::size_t count) {
+    const std::size_t whole = count / chunk_size * chunk_bytes(chunk_size);
+    return (sizeof(ListHead) + whole + chunk_bytes(count % chunk_size) + 15) / 16 * 16;
+}
+
+/// From the world to units. Parallel: u = x * scale - z * slope - offset for the coordinate x along
+/// the u axis and z along the depth axis; radial: u = x / z * scale - offset for coordinates from
+/// the apex, z > 0. Depth: (z - depth_first) * depth_scale + shallowest.
+struct FaceMap {
+    double scale_u = 0, slope_u = 0, offset_u = 0;
+    double scale_v = 0, slope_v = 0, offset_v = 0;
+    double depth_first = 0, depth_scale = 0;
+    double size_u = 0, size_v = 0; ///< units; what is outside meets nothing
+    double sign = 1;               ///< depth is the coordinate along the axis times this
+    double reach = 0;              ///< greatest depth that a query may begin or end at
+    int axis = 0, axis_u = 1, axis_v = 2;
+};
+
+struct Face {
+    FaceMap map;
+    const Cell* cells = nullptr; ///< row by row, u first
+    std::int32_t width = 0;      ///< cells along u
+    std::int32_t height = 0;
+};
+
+struct Kernels;
+
+/// World vertices of a triangle, coordinate by coordinate: x of v0, v1, v2, then y, then z.
+inline constexpr std::size_t record_floats = 9;
+
+/// Bytes that may be read beyond the last list or record.
+inline constexpr std::size_t slack_bytes = 64;
+
+} // namespace raywise::pencil_detail
+
+namespace raywise {
+
+struct PencilGrid::Data {
+    explicit Data(const Pencil& p) : pencil(p) {}
+
+    Pencil pencil;
+    const pencil_detail::Kernels* kernels = nullptr;
+    std::array<pencil_detail::Face, 6> faces{}; ///< 2 * axis + (1 when negative); parallel: 0
+    const std::byte* lists = nullptr;           ///< lists and split cells
+    const float* records = nullptr;
+    std::vector<PrimId> near; ///< radial: triangles at the apex
+    Vec3d apex{};
+    float doubt = 0; ///< see Line::doubt
+
+    std::optional<LargeBuffer<std::byte>> memory; ///< top cells of all faces, then lists
+    std::optional<LargeBuffer<float>> record_memory;
+    std::size_t memory_bytes = 0;
+    std::size_t record_count = 0;
+    PencilGridStatistics statistics{};
+};
+
+} // namespace raywise

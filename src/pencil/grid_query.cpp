@@ -1,0 +1,547 @@
+// Queries of a pencil grid, compiled once for every instruction set.
+#include "pencil/face_map.hpp"
+#include "pencil/grid_data.hpp"
+#include "pencil/kernels.hpp"
+
+#include <raywise/geometry/ray_triangle.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "pencil/grid_query.cpp"
+// The order matters: foreach_target.h includes this file anew for every target.
+// clang-format off
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+#include "pencil/line_filter.hpp"
+// clang-format on
+
+HWY_BEFORE_NAMESPACE();
+
+namespace raywise::pencil_detail::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Counts nothing, costs nothing.
+struct NoCounts {
+    static void query() {}
+    static void cell() {}
+    static void list(std::size_t) {}
+    static void prim() {}
+    static void decided() {}
+};
+
+struct Counts {
+    PencilGridCounts* counts;
+
+    void query() const { ++counts->queries; }
+    void cell() const { ++counts->cells; }
+    void list(std::size_t references) const {
+        ++counts->lists;
+        counts->references += references;
+    }
+    void prim() const { ++counts->prims; }
+    void decided() const { ++counts->decided; }
+};
+
+/// Which way a ray of the pencil runs.
+enum class Heading : std::uint8_t { to_emitter, from_emitter };
+
+/// A ray as a face sees it.
+struct Spot {
+    const Face* face;
+    double u, v;          ///< units
+    double origin_z;      ///< depth of the origin
+    std::int32_t deepest; ///< no hit is deeper, in units
+    std::int32_t sure;    ///< what is not deeper lies on the ray's emitter's side of its far end
+    bool is_whole;        ///< whether the ray reaches the emitter's side of all geometry
+    bool is_known;        ///< whether its place is within reach
+    Line line;
+};
+
+template <Heading heading>
+HWY_INLINE Spot locate(const Grid& grid, const Ray& ray) {
+    Spot spot;
+    Place place;
+    if (grid.pencil.kind() == Pencil::Kind::parallel) {
+        spot.face = grid.faces.data();
+        const FaceMap& map = spot.face->map;
+        place = parallel_place(
+            map,
+            static_cast<double>(ray.origin[map.axis_u]),
+            static_cast<double>(ray.origin[map.axis_v]),
+            static_cast<double>(ray.origin[map.axis])
+        );
+        spot.is_known = std::abs(place.z) <= map.reach;
+    } else {
+        const Vec3d seen = heading == Heading::to_emitter ? to_double(ray.origin) - grid.apex
+                                                          : to_double(ray.direction);
+        const int axis = dominant_axis(seen);
+        const std::size_t face = 2 * static_cast<std::size_t>(axis) + (seen[axis] < 0 ? 1U : 0U);
+        spot.face = &grid.faces[face];
+        const FaceMap& map = spot.face->map;
+        place = radial_place(map, seen[map.axis_u], seen[map.axis_v], seen[axis]);
+        if constexpr (heading == Heading::from_emitter) place.z = 0;
+        spot.is_known = place.z <= map.reach;
+    }
+    const FaceMap& map = spot.face->map;
+    spot.u = place.u;
+    spot.v = place.v;
+    spot.origin_z = place.z;
+
+    const float direction_z = ray.direction[map.axis];
+    const float speed = std::abs(direction_z);
+    // Hits at an infinite t do not count.
+    const float t_max = std::min(ray.t_max, std::numeric_limits<float>::max());
+    Line& line = spot.line;
+    line.origin_u = ray.origin[map.axis_u];
+    line.origin_v = ray.origin[map.axis_v];
+    line.origin_z = ray.origin[map.axis];
+    line.shear_u = ray.direction[map.axis_u] / direction_z;
+    line.shear_v = ray.direction[map.axis_v] / direction_z;
+    line.least = ray.t_min * speed;
+    line.greatest = t_max * speed;
+    line.slack = 0x1p-120F + speed * 0x1p-148F;
+    line.sign = direction_z < 0 ? -1.0F : 1.0F;
+    line.doubt = grid.doubt;
+    line.at_u = static_cast<std::size_t>(3 * map.axis_u);
+    line.at_v = static_cast<std::size_t>(3 * map.axis_v);
+    line.at_z = static_cast<std::size_t>(3 * map.axis);
+
+    constexpr double less = 1 - 0x1p-21;
+    constexpr double more = 1 + 0x1p-21;
+    const double start = static_cast<double>(ray.t_min) * static_cast<double>(speed);
+    const double end = static_cast<double>(t_max) * static_cast<double>(speed);
+    const auto slack = static_cast<double>(line.slack);
+    constexpr std::int32_t rounding = 4;
+    if constexpr (heading == Heading::to_emitter) {
+        spot.deepest = depth_units(map, place.z - start * less + slack);
+        spot.sure = depth_units(map, place.z - start * more - slack) - rounding;
+        spot.is_whole = depth_units(map, place.z - end * less + slack) < shallowest - rounding;
+    } else {
+        spot.deepest = depth_units(map, place.z + end * more + slack);
+        spot.sure = depth_units(map, place.z + end * less - slack) - rounding;
+        spot.is_whole = depth_units(map, place.z + start * more + slack) < shallowest - rounding;
+    }
+    return spot;
+}
+
+/// The list that a ray must look through, or a verdict without one.
+struct Leaf {
+    Cell cell;
+    int shift; ///< its side is 2^shift units
+    std::int32_t u, v;
+    std::optional<Verdict> verdict;
+};
+
+/// `decides_hits`: whether a ray that passes two triangles may be answered "hit" at once.
+template <class Count>
+HWY_INLINE Leaf find_leaf(const Grid& grid, const Spot& spot, bool decides_hits, Count count) {
+    const Face& face = *spot.face;
+    const auto u = static_cast<std::int32_t>(spot.u);
+    const auto v = static_cast<std::int32_t>(spot.v);
+    const Cell* cell =
+        face.cells + static_cast<std::ptrdiff_t>(v >> top_shift) * face.width + (u >> top_shift);
+    int shift = top_shift;
+    for (;;) {
+        count.cell();
+        const Cell here = *cell;
+        if ((spot.deepest >> 8) < here.near) return {here, shift, u, v, Verdict::miss};
+        if (decides_hits && (spot.sure >> 8) > here.cover) return {here, shift, u, v, Verdict::hit};
+        if ((here.link & Cell::split_mark) == 0) return {here, shift, u, v, std::nullopt};
+        shift -= split_bits;
+        const auto child = static_cast<std::size_t>(((v >> shift) & 3) * 4 + ((u >> shift) & 3));
+        cell = reinterpret_cast<const Cell*>(
+                   grid.lists + std::size_t{here.link & ~Cell::split_mark} * 16
+               ) +
+               child;
+    }
+}
+
+HWY_INLINE bool is_inside(const Spot& spot) {
+    const FaceMap& map = spot.face->map;
+    return spot.u >= 0 && spot.v >= 0 && spot.u < map.size_u && spot.v < map.size_v;
+}
+
+HWY_INLINE void prefetch(const void* address) {
+#if HWY_COMPILER_GCC || HWY_COMPILER_CLANG
+    __builtin_prefetch(address);
+#else
+    (void)address;
+#endif
+}
+
+#if HWY_TARGET == HWY_SCALAR
+
+/// Bit i is set when reference i of the chunk may be met.
+inline unsigned
+touched(const std::byte* chunk, std::size_t size, std::int8_t u, std::int8_t v, std::int8_t depth) {
+    const auto* at = reinterpret_cast<const std::int8_t*>(chunk);
+    const std::size_t stride = padded(size);
+    unsigned bits = 0;
+    for (std::size_t i = 0; i < size; ++i)
+        if (at[i] <= u && at[stride + i] >= u && at[2 * stride + i] <= v &&
+            at[3 * stride + i] >= v && at[4 * stride + i] <= depth)
+            bits |= 1U << i;
+    return bits;
+}
+
+#else
+
+using Bytes = hn::FixedTag<std::int8_t, chunk_size>;
+
+/// Bit i is set when reference i of the chunk may be met.
+HWY_INLINE unsigned
+touched(const std::byte* chunk, std::size_t size, std::int8_t u, std::int8_t v, std::int8_t depth) {
+    const Bytes d;
+    const std::size_t stride = padded(size);
+    const auto load = [&](std::size_t row) HWY_ATTR {
+        return hn::LoadU(d, reinterpret_cast<const std::int8_t*>(chunk + row * stride));
+    };
+    const auto at_u = hn::Set(d, u);
+    const auto at_v = hn::Set(d, v);
+    const auto is_outside = hn::Or(
+        hn::Or(
+            hn::Or(hn::Gt(load(0), at_u), hn::Lt(load(1), at_u)),
+            hn::Or(hn::Gt(load(2), at_v), hn::Lt(load(3), at_v))
+        ),
+        hn::Gt(load(4), hn::Set(d, depth))
+    );
+    std::uint8_t bytes[8];
+    hn::StoreMaskBits(d, is_outside, bytes);
+    std::uint16_t bits = 0;
+    std::memcpy(&bits, bytes, sizeof bits);
+    return ~unsigned{bits} & ((1U << size) - 1);
+}
+
+#endif
+
+/// Calls `visit(id)` for the references that the ray may meet, by depth, until it returns true.
+/// `deepest` is read again before each chunk.
+template <class Count, class Visit>
+HWY_INLINE bool
+scan(const Grid& grid, const Leaf& leaf, const std::int32_t& deepest, Count count, Visit visit) {
+    const std::byte* at = grid.lists + std::size_t{leaf.cell.link} * 16;
+    prefetch(at + 64);
+    prefetch(at + 128);
+    ListHead head;
+    std::memcpy(&head, at, sizeof head);
+    at += sizeof head;
+    const int places = leaf.shift - place_bits;
+    const auto byte = [](std::int32_t value) { return static_cast<std::int8_t>(value ^ 0x80); };
+    const std::int8_t u = byte((leaf.u >> places) & 255);
+    const std::int8_t v = byte((leaf.v >> places) & 255);
+    std::size_t left = head.count();
+    count.list(left);
+    for (;;) {
+        if (deepest < head.base) return false;
+        const std::int8_t depth = byte(std::min((deepest - head.base) >> head.shift(), 255));
+        const std::size_t size = std::min(left, chunk_size);
+        const std::byte* ids = at + 5 * padded(size);
+        for (unsigned bits = touched(at, size, u, v, depth); bits != 0; bits &= bits - 1) {
+            PrimId id;
+            std::memcpy(
+                &id, ids + sizeof id * static_cast<std::size_t>(std::countr_zero(bits)), sizeof id
+            );
+            if (visit(id)) return true;
+        }
+        left -= size;
+        if (left == 0) return false;
+        at += chunk_bytes(chunk_size);
+        if (static_cast<std::int8_t>(at[4 * padded(std::min(left, chunk_size))]) > depth)
+            return false;
+    }
+}
+
+HWY_INLINE const float* record(const Grid& grid, PrimId id) {
+    return grid.records + to_index(id) * record_floats;
+}
+
+template <class Count>
+HWY_INLINE bool is_hit(const Grid& grid, const Ray& ray, const Line& line, PrimId id, Count count) {
+    if (id == ray.excluded) return false;
+    count.prim();
+    const Crossing crossing = cross<false>(line, record(grid, id));
+    if (crossing.finding != Finding::doubt) return crossing.finding == Finding::hit;
+    count.decided();
+    return decide(grid, ray, id, ray.t_max).has_value();
+}
+
+/// Whether the leaf's list has all triangles that the ray may meet.
+HWY_INLINE bool is_complete(const Spot& spot, const Leaf& leaf) {
+    return (spot.deepest >> 8) <= leaf.cell.cover;
+}
+
+template <Heading heading, class Count>
+HWY_INLINE Verdict any_hit_along(const Grid& grid, const Ray& ray, Count count) {
+    count.query();
+    const Spot spot = locate<heading>(grid, ray);
+    if (!spot.is_known) return is_valid(ray) ? Verdict::unknown : Verdict::miss;
+    for (const PrimId id : grid.near)
+        if (is_hit(grid, ray, spot.line, id, count)) return Verdict::hit;
+    if (!is_inside(spot)) return Verdict::miss;
+    const Leaf leaf = find_leaf(grid, spot, spot.is_whole, count);
+    if (leaf.verdict) return *leaf.verdict;
+    const bool found = scan(grid, leaf, spot.deepest, count, [&](PrimId id) HWY_ATTR {
+        return is_hit(grid, ray, spot.line, id, count);
+    });
+    if (found) return Verdict::hit;
+    return is_complete(spot, leaf) ? Verdict::miss : Verdict::unknown;
+}
+
+/// The closest hit so far, decided or not yet.
+template <class Count>
+class Closest {
+public:
+    Closest(const Grid& grid, const Ray& ray, const Line& line, Count count)
+        : grid_(grid), ray_(ray), line_(line), count_(count) {
+        best_.t = ray.t_max;
+    }
+
+    HWY_INLINE void add(PrimId id) {
+        if (id == ray_.excluded || id == pending_ || id == best_.prim) return;
+        count_.prim();
+        const Crossing crossing = cross<true>(line_, record(grid_, id));
+        if (crossing.finding == Finding::miss) return;
+        if (crossing.finding == Finding::doubt) {
+            decide_now(id);
+            return;
+        }
+        if (crossing.depth - crossing.error > reach_) return;
+        if (pending_ != no_prim) {
+            if (crossing.depth + crossing.error >= pending_depth_.depth - pending_depth_.error) {
+                decide_now(pending_);
+                pending_ = no_prim;
+                decide_now(id);
+                return;
+            }
+        }
+        pending_ = id;
+        pending_depth_ = crossing;
+        reach_ = std::min(reach_, crossing.depth + crossing.error);
+    }
+
+    /// No closer hit is farther along the ray.
+    [[nodiscard]] float reach() const { return reach_; }
+
+    [[nodiscard]] HWY_INLINE bool finish(Hit& hit) {
+        if (pending_ != no_prim) decide_now(pending_);
+        pending_ = no_prim;
+        if (best_.prim != no_prim) hit = best_;
+        return best_.prim != no_prim;
+    }
+
+private:
+    void decide_now(PrimId id) {
+        count_.decided();
+        const auto hit = decide(grid_, ray_, id, best_.t);
+        if (!hit || !(best_.prim == no_prim || is_closer(*hit, best_))) return;
+        best_ = *hit;
+        // A rounded t and the product's rounding.
+        reach_ = std::min(reach_, hit->t * std::abs(speed()) * (1 + 0x1p-20F) + line_.slack);
+    }
+
+    [[nodiscard]] float speed() const { return ray_.direction[static_cast<int>(line_.at_z / 3)]; }
+
+    const Grid& grid_;
+    const Ray& ray_;
+    const Line& line_;
+    Count count_;
+    Hit best_{};
+    PrimId pending_ = no_prim;
+    Crossing pending_depth_{};
+    float reach_ = std::numeric_limits<float>::infinity();
+};
+
+template <Heading heading, class Count>
+HWY_INLINE Verdict closest_hit_along(const Grid& grid, const Ray& ray, Hit& hit, Count count) {
+    count.query();
+    Spot spot = locate<heading>(grid, ray);
+    if (!spot.is_known) return is_valid(ray) ? Verdict::unknown : Verdict::miss;
+    Closest closest(grid, ray, spot.line, count);
+    const auto limit = [&]() HWY_ATTR {
+        if constexpr (heading == Heading::from_emitter)
+            spot.deepest = std::min(
+                spot.deepest,
+                depth_units(
+                    spot.face->map,
+                    spot.origin_z + static_cast<double>(closest.reach()) * (1 + 0x1p-40)
+                ) + 4
+            );
+    };
+    for (const PrimId id : grid.near)
+        closest.add(id);
+    bool is_all = true;
+    if (is_inside(spot)) {
+        limit();
+        const Leaf leaf = find_leaf(grid, spot, false, count);
+        if (!leaf.verdict) {
+            scan(grid, leaf, spot.deepest, count, [&](PrimId id) HWY_ATTR {
+                closest.add(id);
+                limit();
+                return false;
+            });
+            is_all = is_complete(spot, leaf);
+        }
+    }
+    if (!is_all) return Verdict::unknown;
+    return closest.finish(hit) ? Verdict::hit : Verdict::miss;
+}
+
+template <Heading heading>
+Verdict all_hits_along(const Grid& grid, const Ray& ray, FunctionRef<void(const Hit&)> visit) {
+    const Spot spot = locate<heading>(grid, ray);
+    if (!spot.is_known) return is_valid(ray) ? Verdict::unknown : Verdict::miss;
+    bool found = false;
+    const auto add = [&](PrimId id) HWY_ATTR {
+        if (id == ray.excluded) return;
+        if (cross<false>(spot.line, record(grid, id)).finding == Finding::miss) return;
+        if (const auto hit = decide(grid, ray, id, ray.t_max)) {
+            found = true;
+            visit(*hit);
+        }
+    };
+    for (const PrimId id : grid.near)
+        add(id);
+    const auto verdict = [&] { return found ? Verdict::hit : Verdict::miss; };
+    if (!is_inside(spot)) return verdict();
+    const Leaf leaf = find_leaf(grid, spot, false, NoCounts{});
+    if (leaf.verdict) return verdict();
+    scan(grid, leaf, spot.deepest, NoCounts{}, [&](PrimId id) HWY_ATTR {
+        if (std::find(grid.near.begin(), grid.near.end(), id) == grid.near.end()) add(id);
+        return false;
+    });
+    return is_complete(spot, leaf) ? verdict() : Verdict::unknown;
+}
+
+Heading heading_of(const Grid& grid, const Ray& ray) {
+    const bool is_away = grid.pencil.kind() == Pencil::Kind::parallel
+                             ? ray.direction == grid.pencil.direction()
+                             : ray.origin == grid.pencil.apex();
+    return is_away ? Heading::from_emitter : Heading::to_emitter;
+}
+
+Verdict Occluded(const Grid& grid, Vec3 point, float t_min, PrimId excluded) {
+    const Ray ray = grid.pencil.shadow_ray(point, t_min, excluded);
+    return any_hit_along<Heading::to_emitter>(grid, ray, NoCounts{});
+}
+
+template <class Count>
+HWY_INLINE Verdict any_hit_of(const Grid& grid, const Ray& ray, Count count) {
+    return heading_of(grid, ray) == Heading::to_emitter
+               ? any_hit_along<Heading::to_emitter>(grid, ray, count)
+               : any_hit_along<Heading::from_emitter>(grid, ray, count);
+}
+
+Verdict AnyHit(const Grid& grid, const Ray& ray) {
+    return any_hit_of(grid, ray, NoCounts{});
+}
+
+Verdict AnyHitCounted(const Grid& grid, const Ray& ray, PencilGridCounts& counts) {
+    return any_hit_of(grid, ray, Counts{&counts});
+}
+
+template <class Count>
+HWY_INLINE Verdict closest_hit_of(const Grid& grid, const Ray& ray, Hit& hit, Count count) {
+    return heading_of(grid, ray) == Heading::to_emitter
+               ? closest_hit_along<Heading::to_emitter>(grid, ray, hit, count)
+               : closest_hit_along<Heading::from_emitter>(grid, ray, hit, count);
+}
+
+Verdict ClosestHit(const Grid& grid, const Ray& ray, Hit& hit) {
+    return closest_hit_of(grid, ray, hit, NoCounts{});
+}
+
+Verdict ClosestHitCounted(const Grid& grid, const Ray& ray, Hit& hit, PencilGridCounts& counts) {
+    return closest_hit_of(grid, ray, hit, Counts{&counts});
+}
+
+Verdict AllHits(const Grid& grid, const Ray& ray, FunctionRef<void(const Hit&)> visit) {
+    return heading_of(grid, ray) == Heading::to_emitter
+               ? all_hits_along<Heading::to_emitter>(grid, ray, visit)
+               : all_hits_along<Heading::from_emitter>(grid, ray, visit);
+}
+
+void OccludedBatch(const Grid& grid, const PointBatch& batch, Verdict* verdicts) {
+    for (std::size_t i = 0; i < batch.count; ++i)
+        verdicts[i] = Occluded(
+            grid,
+            batch.points[i],
+            batch.t_min,
+            batch.excluded == nullptr ? no_prim : batch.excluded[i]
+        );
+}
+
+void AnyHitBatch(const Grid& grid, const Ray* rays, std::size_t count, Verdict* verdicts) {
+    for (std::size_t i = 0; i < count; ++i)
+        verdicts[i] = AnyHit(grid, rays[i]);
+}
+
+const Kernels kernels{
+    hwy::TargetName(HWY_TARGET),
+    Occluded,
+    AnyHit,
+    AnyHitCounted,
+    ClosestHit,
+    ClosestHitCounted,
+    AllHits,
+    OccludedBatch,
+    AnyHitBatch
+};
+
+const Kernels* GetKernels() {
+    return &kernels;
+}
+
+} // namespace raywise::pencil_detail::HWY_NAMESPACE
+
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+
+namespace raywise::pencil_detail {
+
+HWY_EXPORT(GetKernels);
+
+namespace {
+
+std::vector<const Kernels*> collect_kernels() {
+    std::vector<const Kernels*> all;
+    for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+        hwy::SetSupportedTargetsForTest(target);
+        hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+        all.push_back(HWY_DYNAMIC_DISPATCH(GetKernels)());
+    }
+    hwy::SetSupportedTargetsForTest(0);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    return all;
+}
+
+} // namespace
+
+std::span<const Kernels* const> all_kernels() {
+    static const std::vector<const Kernels*> all = collect_kernels();
+    return all;
+}
+
+const Kernels& best_kernels() {
+    return *all_kernels().front();
+}
+
+std::optional<Hit> decide(const Grid& grid, const Ray& ray, PrimId id, float t_max) {
+    const float* r = grid.records + to_index(id) * record_floats;
+    const Triangle triangle{{r[0], r[3], r[6]}, {r[1], r[4], r[7]}, {r[2], r[5], r[8]}};
+    return ExactKernel::decide(ray, triangle, id, t_max);
+}
+
+} // namespace raywise::pencil_detail
+
+#endif

@@ -1,0 +1,34 @@
+// A triangle as a face sees it, snapped to units.
+#pragma once
+
+#include "pencil/grid_data.hpp"
+
+#include <raywise/core/ids.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+namespace raywise::pencil_detail {
+
+/// A triangle, or a part of one that was cut by the bounds of a cube face. A ray of the pencil that
+/// meets the part passes, in units, within `margin - 1` of the place where a query says it is; each
+/// corner is within 1 of its place along u and v.
+struct Piece {
+    std::array<std::int32_t, 3> u;
+    std::array<std::int32_t, 3> v;
+    std::array<float, 3> key; ///< linear across the face, ascending with depth: z, or -1 / z
+    std::int32_t margin;
+    PrimId prim;
+    bool is_part; ///< whether other pieces have the same triangle
+
+    [[nodiscard]] std::int32_t least_u() const { return std::min({u[0], u[1], u[2]}) - margin; }
+
+    [[nodiscard]] std::int32_t greatest_u() const { return std::max({u[0], u[1], u[2]}) + margin; }
+
+    [[nodiscard]] std::int32_t least_v() const { return std::min({v[0], v[1], v[2]}) - margin; }
+
+    [[nodiscard]] std::int32_t greatest_v() const { return std::max({v[0], v[1], v[2]}) + margin; }
+};
+
+} // namespace raywise::pencil_detail

@@ -1,0 +1,380 @@
+#include <raywise/pencil/pencil_grid.hpp>
+
+#include "support/closed_mesh.hpp"
+#include "support/soup.hpp"
+
+#include <raywise/core/error.hpp>
+#include <raywise/core/executor.hpp>
+#include <raywise/core/rng.hpp>
+#include <raywise/geometry/ray_triangle.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace raywise {
+namespace {
+
+using namespace test_support;
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+std::vector<Hit> brute_force(const TriangleView& triangles, const Ray& ray) {
+    std::vector<Hit> hits;
+    for (std::size_t i = 0; i < triangles.size(); ++i)
+        if (const auto hit = intersect(ray, triangles[to_prim(i)], to_prim(i)))
+            hits.push_back(*hit);
+    std::sort(hits.begin(), hits.end(), is_closer);
+    return hits;
+}
+
+/// How often grids did not know.
+struct Tally {
+    int queries = 0;
+    int unknown_any = 0;
+    int unknown_closest = 0;
+};
+
+void expect_same_as_brute_force(
+    const PencilGrid& grid,
+    const TriangleView& triangles,
+    const Ray& ray,
+    Tally& tally
+) {
+    ASSERT_TRUE(grid.covers(ray));
+    const std::vector<Hit> expected = brute_force(triangles, ray);
+    const Verdict wanted = expected.empty() ? Verdict::miss : Verdict::hit;
+    ++tally.queries;
+    const Verdict any = grid.any_hit(ray);
+    if (any == Verdict::unknown) {
+        ++tally.unknown_any;
+    } else {
+        ASSERT_EQ(any, wanted);
+    }
+    PencilGridCounts counts;
+    EXPECT_EQ(grid.any_hit(ray, counts), any);
+    EXPECT_EQ(counts.queries, 1U);
+    Hit hit;
+    const Verdict closest = grid.closest_hit(ray, hit);
+    if (closest == Verdict::unknown) {
+        ++tally.unknown_closest;
+    } else {
+        ASSERT_EQ(closest, wanted);
+        if (!expected.empty()) {
+            EXPECT_EQ(hit.t, expected.front().t);
+            EXPECT_EQ(hit.prim, expected.front().prim);
+            EXPECT_EQ(hit.front, expected.front().front);
+        }
+    }
+    std::vector<Hit> all;
+    const Verdict complete = grid.all_hits(ray, [&](const Hit& h) { all.push_back(h); });
+    if (complete != Verdict::unknown) {
+        EXPECT_EQ(complete, wanted);
+        std::sort(all.begin(), all.end(), is_closer);
+        ASSERT_EQ(all.size(), expected.size());
+        for (std::size_t i = 0; i < all.size(); ++i)
+            EXPECT_EQ(all[i].prim, expected[i].prim);
+    }
+}
+
+Vec3 some_vertex(Rng& rng, const Soup& soup) {
+    return soup.vertices[static_cast<std::size_t>(rng.below(soup.vertices.size()))];
+}
+
+/// On a triangle, on one of its edges or at a vertex, as near as floats allow.
+Vec3 surface_point(Rng& rng, const Soup& soup, PrimId& prim) {
+    const auto triangle = static_cast<std::size_t>(rng.below(soup.corners.size()));
+    prim = to_prim(triangle);
+    const Vec3 a = soup.vertices[3 * triangle];
+    const Vec3 b = soup.vertices[3 * triangle + 1];
+    const Vec3 c = soup.vertices[3 * triangle + 2];
+    const float u = rng.below(3) == 0 ? 0 : rng.uniform();
+    const float v = rng.below(3) == 0 ? 0 : (1 - u) * rng.uniform();
+    return a + (b - a) * u + (c - a) * v;
+}
+
+/// A ray of the pencil that looks for trouble.
+Ray random_pencil_ray(Rng& rng, const Pencil& pencil, const Soup& soup, Coordinates how) {
+    PrimId prim = no_prim;
+    const Vec3 target = rng.below(3) == 0   ? point(rng, how)
+                        : rng.below(3) == 0 ? some_vertex(rng, soup)
+                                            : surface_point(rng, soup, prim);
+    const PrimId excluded = rng.below(2) == 0 ? prim : no_prim;
+    const float t_min = rng.below(3) == 0 ? 0 : rng.uniform() * (rng.below(2) == 0 ? 1e-4F : 1);
+    Ray ray = pencil.shadow_ray(target, t_min, excluded);
+    if (rng.below(4) == 0) { // away from the emitter
+        if (pencil.kind() == Pencil::Kind::parallel) {
+            ray.direction = pencil.direction();
+            if (rng.below(2) == 0) ray.origin = target - pencil.direction() * 8.0F;
+            ray.t_max = infinity;
+        } else {
+            ray.origin = pencil.apex();
+            ray.direction = target - pencil.apex();
+            ray.t_max = infinity;
+        }
+    }
+    if (rng.below(4) == 0) ray.t_max = std::min(ray.t_max, ray.t_min + rng.uniform());
+    return ray;
+}
+
+Pencil random_pencil(Rng& rng, const Soup& soup, Coordinates how) {
+    switch (rng.below(6)) {
+    case 0: { // along an axis
+        Vec3 direction{};
+        direction[static_cast<int>(rng.below(3))] = rng.below(2) == 0 ? 1.0F : -2.5F;
+        return Pencil::parallel(direction);
+    }
+    case 1: { // along an edge, often
+        const Vec3 direction = some_vertex(rng, soup) - some_vertex(rng, soup);
+        if (direction != Vec3{} && is_finite(direction)) return Pencil::parallel(direction);
+        return Pencil::parallel({1, 1, 1});
+    }
+    case 2:
+        return Pencil::parallel(Vec3{rng.uniform() - 0.5F, rng.uniform() - 0.5F, 0.3F});
+    case 3:
+        return Pencil::radial(some_vertex(rng, soup));
+    case 4: {
+        PrimId prim = no_prim;
+        return Pencil::radial(surface_point(rng, soup, prim));
+    }
+    default:
+        return Pencil::radial(point(rng, how));
+    }
+}
+
+void compare_on_soups(Coordinates how, std::uint64_t seed, int soups, std::size_t most) {
+    Tally tally;
+    for (int i = 0; i < soups && !testing::Test::HasFatalFailure(); ++i) {
+        Rng rng(seed, static_cast<std::uint64_t>(i));
+        const Soup soup = random_soup(rng, most, how);
+        const Pencil pencil = random_pencil(rng, soup, how);
+        PencilGridParams params;
+        params.cell_size = 1 + rng.uniform() * 8;
+        params.leaf_size = 4 + static_cast<std::uint32_t>(rng.below(24));
+        params.bytes_per_triangle = 1e9;
+        PencilGrid grid = build_pencil_grid(soup.view(), pencil, params);
+        const auto sets = PencilGrid::instruction_sets();
+        for (int k = 0; k < 60 && !testing::Test::HasFatalFailure(); ++k) {
+            grid.use_instruction_set(sets[static_cast<std::size_t>(rng.below(sets.size()))]);
+            const Ray ray = random_pencil_ray(rng, pencil, soup, how);
+            if (!is_valid(ray)) continue;
+            SCOPED_TRACE(testing::Message() << "soup " << i << ", ray " << k);
+            expect_same_as_brute_force(grid, soup.view(), ray, tally);
+        }
+    }
+    EXPECT_LT(tally.unknown_any, tally.queries / 4) << tally.queries;
+    EXPECT_LT(tally.unknown_closest, tally.queries / 2) << tally.queries;
+}
+
+TEST(PencilGrid, AgreesWithBruteForceOnSmoothSoups) {
+    compare_on_soups(Coordinates::smooth, 11, 150, 60);
+    compare_on_soups(Coordinates::smooth, 12, 12, 1500);
+}
+
+TEST(PencilGrid, AgreesWithBruteForceOnSoupsOfTies) {
+    compare_on_soups(Coordinates::grid, 13, 250, 80);
+}
+
+TEST(PencilGrid, AgreesWithBruteForceOnSoupsOfManyScales) {
+    compare_on_soups(Coordinates::mixed, 14, 150, 60);
+}
+
+TEST(PencilGrid, AgreesWithBruteForceFromDenormalsTo2To60) {
+    compare_on_soups(Coordinates::wild, 15, 150, 60);
+}
+
+TEST(PencilGrid, OverNothingIsNeverHit) {
+    const Soup empty;
+    for (const Pencil& pencil : {Pencil::parallel({0, -1, 0}), Pencil::radial({1, 2, 3})}) {
+        const PencilGrid grid = build_pencil_grid(empty.view(), pencil);
+        EXPECT_EQ(grid.occluded({4, 5, 6}), Verdict::miss);
+        Hit hit;
+        EXPECT_EQ(grid.closest_hit(pencil.shadow_ray({4, 5, 6}), hit), Verdict::miss);
+    }
+}
+
+TEST(PencilGrid, LeavesOutTrianglesThatAreNotFinite) {
+    Soup soup;
+    soup.add({{0, 0, infinity}, {1, 0, 0}, {0, 1, 0}});
+    soup.add({{0, 0, 0}, {1, 0, std::numeric_limits<float>::quiet_NaN()}, {0, 1, 0}});
+    soup.add({{0, 0, 1}, {1, 0, 1}, {0, 1, 1}});
+    const PencilGrid grid = build_pencil_grid(soup.view(), Pencil::parallel({0, 0, -1}));
+    EXPECT_EQ(grid.occluded({0.25F, 0.25F, 0}), Verdict::hit);
+    EXPECT_EQ(grid.occluded({0.25F, 0.25F, 0}, 0, PrimId{2}), Verdict::miss);
+    EXPECT_EQ(grid.occluded({0.25F, 0.25F, 2}), Verdict::miss);
+}
+
+TEST(PencilGrid, TakesPointsThatAreNoPlacesForAMiss) {
+    Soup soup;
+    soup.add({{0, 0, 1}, {1, 0, 1}, {0, 1, 1}});
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    for (const Pencil& pencil : {Pencil::parallel({0, 0, -1}), Pencil::radial({0, 0, 3})}) {
+        const PencilGrid grid = build_pencil_grid(soup.view(), pencil);
+        EXPECT_EQ(grid.occluded({nan, 0, 0}), Verdict::miss);
+        EXPECT_EQ(grid.occluded({infinity, 0, 0}), Verdict::miss);
+        EXPECT_EQ(grid.occluded({0, 0, -infinity}), Verdict::miss);
+        EXPECT_EQ(grid.occluded({0, 0, 3}), Verdict::miss);
+    }
+}
+
+/// Points in, on and around the mesh, and toward its vertices and edges.
+void compare_on_mesh(const ClosedMesh& mesh, const Pencil& pencil, Rng& rng) {
+    Soup soup;
+    for (const auto& c : mesh.corners) {
+        const auto at = [&](std::uint32_t i) { return to_float(mesh.vertices[i]); };
+        soup.add({at(c[0]), at(c[1]), at(c[2])});
+    }
+    PencilGridParams params;
+    params.bytes_per_triangle = 1e9;
+    const PencilGrid grid = build_pencil_grid(soup.view(), pencil, params);
+    Tally tally;
+    for (int k = 0; k < 400 && !testing::Test::HasFatalFailure(); ++k) {
+        const Ray ray = random_pencil_ray(rng, pencil, soup, Coordinates::smooth);
+        if (is_valid(ray)) expect_same_as_brute_force(grid, soup.view(), ray, tally);
+    }
+}
+
+TEST(PencilGrid, LeaksThroughNoClosedMesh) {
+    Rng rng(16, 0);
+    for (const ClosedMesh& mesh : {torus(24, 12), grid_box(6)}) {
+        compare_on_mesh(mesh, Pencil::parallel({0.2F, -0.9F, 0.4F}), rng);
+        compare_on_mesh(mesh, Pencil::parallel({0, 0, -1}), rng);
+        compare_on_mesh(mesh, Pencil::parallel({1, 1, -1}), rng);
+        compare_on_mesh(mesh, Pencil::radial({0, 0, 0}), rng);
+        compare_on_mesh(mesh, Pencil::radial({0.9F, 0.1F, 0.05F}), rng);
+        compare_on_mesh(mesh, Pencil::radial({1, 0, 0}), rng);
+        compare_on_mesh(mesh, Pencil::radial({3, 4, -5}), rng);
+        compare_on_mesh(mesh, Pencil::radial({1, 1, 7}), rng);
+    }
+}
+
+/// A rolling ground of 2 * side * side triangles with a roof over a part of it.
+Soup landscape(std::size_t side) {
+    Soup soup;
+    const auto at = [&](std::size_t i, std::size_t k) {
+        const float x = static_cast<float>(i) / static_cast<float>(side);
+        const float y = static_cast<float>(k) / static_cast<float>(side);
+        return Vec3{x, 0.05F * std::sin(30 * x) * std::cos(20 * y), y};
+    };
+    for (std::size_t i = 0; i < side; ++i)
+        for (std::size_t k = 0; k < side; ++k) {
+            soup.add({at(i, k), at(i + 1, k), at(i + 1, k + 1)});
+            soup.add({at(i, k), at(i + 1, k + 1), at(i, k + 1)});
+        }
+    for (const float height : {0.3F, 0.32F}) {
+        soup.add({{0, height, 0}, {0.5F, height, 0}, {0.5F, height, 0.5F}});
+        soup.add({{0, height, 0}, {0.5F, height, 0.5F}, {0, height, 0.5F}});
+    }
+    return soup;
+}
+
+TEST(PencilGrid, IsTheSameForAnyNumberOfThreads) {
+    const Soup soup = landscape(120);
+    const Executor two(2);
+    for (const Pencil& pencil :
+         {Pencil::parallel({0.2F, -1, 0.1F}), Pencil::radial({0.5F, 1, 0.5F})})
+        EXPECT_EQ(
+            build_pencil_grid(soup.view(), pencil).content_hash(),
+            build_pencil_grid(soup.view(), pencil, {}, two).content_hash()
+        );
+}
+
+TEST(PencilGrid, KeepsItsMemoryCapByCoarserCells) {
+    Rng rng(17, 0);
+    Soup soup; // long slivers everywhere
+    for (int i = 0; i < 4000; ++i) {
+        const Vec3 a = point(rng, Coordinates::smooth);
+        const Vec3 b = point(rng, Coordinates::smooth);
+        soup.add({a, b, b + Vec3{1e-3F, 1e-3F, 0}});
+    }
+    const Pencil pencil = Pencil::parallel({0.1F, 0.2F, -1});
+    PencilGridParams params;
+    params.cell_size = 1;
+    const PencilGrid grid = build_pencil_grid(soup.view(), pencil, params);
+    EXPECT_GT(grid.statistics().coarsened, 0U);
+    EXPECT_LE(
+        static_cast<double>(grid.size_in_bytes()),
+        params.bytes_per_triangle * static_cast<double>(soup.corners.size()) + (1 << 17)
+    );
+    Tally tally;
+    for (int k = 0; k < 200; ++k)
+        expect_same_as_brute_force(
+            grid, soup.view(), random_pencil_ray(rng, pencil, soup, Coordinates::smooth), tally
+        );
+}
+
+TEST(PencilGrid, CullsWhatTwoTrianglesHideAndStillKnowsEveryShadow) {
+    const Soup soup = landscape(100);
+    const Pencil pencil = Pencil::parallel({0.1F, -1, 0.1F});
+    const PencilGrid grid = build_pencil_grid(soup.view(), pencil);
+    EXPECT_GT(grid.statistics().culled, soup.corners.size() / 10);
+    Rng rng(18, 0);
+    for (int k = 0; k < 2000; ++k) {
+        PrimId prim = no_prim;
+        const Vec3 p = surface_point(rng, soup, prim);
+        const Ray ray = pencil.shadow_ray(p, rng.below(2) == 0 ? 1e-4F : 0, prim);
+        const Verdict wanted = brute_force(soup.view(), ray).empty() ? Verdict::miss : Verdict::hit;
+        ASSERT_EQ(grid.any_hit(ray), wanted);
+        ASSERT_EQ(grid.occluded(p, ray.t_min, prim), wanted);
+    }
+}
+
+TEST(PencilGrid, BatchesAnswerAsSingleQueriesDo) {
+    const Soup soup = landscape(60);
+    const Executor two(2);
+    for (const Pencil& pencil :
+         {Pencil::parallel({0.3F, -1, 0.1F}), Pencil::radial({0.5F, 0.1F, 0.5F})}) {
+        const PencilGrid grid = build_pencil_grid(soup.view(), pencil);
+        Rng rng(19, 0);
+        std::vector<Ray> rays;
+        std::vector<Vec3> points;
+        std::vector<PrimId> excluded;
+        for (int k = 0; k < 20000; ++k) {
+            const Ray ray = random_pencil_ray(rng, pencil, soup, Coordinates::smooth);
+            if (!is_valid(ray)) continue;
+            rays.push_back(ray);
+            points.push_back(ray.origin);
+            excluded.push_back(ray.excluded);
+        }
+        const std::size_t count = rays.size();
+        const auto any = std::make_unique<bool[]>(count);
+        const auto shadowed = std::make_unique<bool[]>(count);
+        std::vector<Hit> closest(count);
+        const auto yes = [](const Ray&) { return true; };
+        const Hit marked{.prim = PrimId{77}};
+        grid.any_hits(rays, {any.get(), count}, yes, two);
+        grid.closest_hits(rays, closest, [&](const Ray&) { return marked; }, two);
+        grid.occluded(points, 1e-4F, excluded, {shadowed.get(), count}, yes, two);
+        for (std::size_t i = 0; i < count; ++i) {
+            EXPECT_EQ(any[i], grid.any_hit(rays[i]) != Verdict::miss);
+            EXPECT_EQ(shadowed[i], grid.occluded(points[i], 1e-4F, excluded[i]) != Verdict::miss);
+            Hit hit;
+            const Verdict verdict = grid.closest_hit(rays[i], hit);
+            if (verdict == Verdict::unknown) hit = marked;
+            EXPECT_EQ(closest[i].prim, hit.prim);
+            EXPECT_EQ(closest[i].t, hit.t);
+        }
+    }
+}
+
+TEST(PencilGrid, RefusesParametersOutOfRange) {
+    const Soup soup = landscape(2);
+    const Pencil pencil = Pencil::parallel({0, -1, 0});
+    EXPECT_THROW(build_pencil_grid(soup.view(), pencil, {.cell_size = 0.5}), Error);
+    EXPECT_THROW(build_pencil_grid(soup.view(), pencil, {.leaf_size = 3}), Error);
+    EXPECT_THROW(build_pencil_grid(soup.view(), pencil, {.bytes_per_triangle = 63}), Error);
+    PencilGrid grid = build_pencil_grid(soup.view(), pencil);
+    EXPECT_THROW(grid.use_instruction_set("abacus"), Error);
+}
+
+} // namespace
+} // namespace raywise
