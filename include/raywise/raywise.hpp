@@ -27,6 +27,8 @@
 #include <raywise/build/plane_scan.hpp>              // IWYU pragma: export
 #include <raywise/build/prim_box.hpp>                // IWYU pragma: export
 #include <raywise/build/quad.hpp>                    // IWYU pragma: export
+#include <raywise/build/spatial.hpp>                 // IWYU pragma: export
+#include <raywise/build/spatial_params.hpp>          // IWYU pragma: export
 #include <raywise/build/split.hpp>                   // IWYU pragma: export
 #include <raywise/build/sweep.hpp>                   // IWYU pragma: export
 #include <raywise/build/top_down.hpp>                // IWYU pragma: export

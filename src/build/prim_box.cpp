@@ -46,9 +46,10 @@ void check_boxes(std::span<const Aabb> boxes) {
             throw Error("box " + std::to_string(i) + " is empty, not finite or beyond +-2^60");
 }
 
-PrimBoxes load_boxes(std::span<const Aabb> boxes, const Executor& executor) {
+PrimBoxes load_boxes(std::span<const Aabb> boxes, const Executor& executor, std::size_t room) {
     check_count(boxes.size());
-    PrimBoxes result{LargeBuffer<PrimBox>(boxes.size()), LargeBuffer<PrimBox>(boxes.size())};
+    const std::size_t size = boxes.size() + room;
+    PrimBoxes result{LargeBuffer<PrimBox>(size), LargeBuffer<PrimBox>(size)};
     std::atomic<bool> is_bad = false;
     executor.for_each_chunk(boxes.size(), prim_chunk, [&](std::size_t begin, std::size_t end) {
         bool good = true;

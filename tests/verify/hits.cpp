@@ -7,6 +7,7 @@
 #include "verify/checks.hpp"
 
 #include <raywise/build/binned.hpp>
+#include <raywise/build/spatial.hpp>
 #include <raywise/core/rng.hpp>
 #include <raywise/geometry/hit_measure.hpp>
 #include <raywise/trace/all_hits.hpp>
@@ -159,12 +160,19 @@ Outcome check_scene(std::uint64_t seed, std::uint64_t index) {
         boxes.push_back(bounds(view[to_prim(i)]));
     const Bvh halves = median_split(view, 1 + index % 4);
     const Bvh binned = build_binned(boxes, SurfaceMeasure{});
+    // Small leaves and much room, so that as many triangles as possible are cut, again and again.
+    const Bvh cut = build_spatial(
+        view,
+        SurfaceMeasure{},
+        {.binned = {.max_leaf_size = 1, .cost = {.node = 0.01}}, .duplication = 8}
+    );
     Outcome outcome;
     for (; outcome.rays < rays_per_scene; ++outcome.rays) {
         const Ray ray = random_ray(rng, soup, how);
         const std::vector<Hit> expected = expected_hits(view, ray);
         const bool right = tree_is_right(halves, view, ray, expected) &&
                            tree_is_right(binned, view, ray, expected) &&
+                           tree_is_right(cut, view, ray, expected) &&
                            same(brute_force_all_hits(view, ray), expected) &&
                            is_first(brute_force_closest_hit(view, ray), expected);
         if (right) continue;

@@ -43,7 +43,9 @@ struct PrimBoxes {
 /// [-2^60, 2^60] and there are at most 2^31 - 1 of them.
 void check_boxes(std::span<const Aabb> boxes);
 
-/// The boxes as a builder wants them; throws as check_boxes does.
-[[nodiscard]] PrimBoxes load_boxes(std::span<const Aabb> boxes, const Executor& executor);
+/// The boxes as a builder wants them, and behind them `room` that is not initialized; throws as
+/// check_boxes does.
+[[nodiscard]] PrimBoxes
+load_boxes(std::span<const Aabb> boxes, const Executor& executor, std::size_t room = 0);
 
 } // namespace raywise
