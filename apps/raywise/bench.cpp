@@ -1,12 +1,13 @@
 // raywise bench: rays per second beside Embree, same rays, verified answers.
-#include "bench_report.hpp"
-#include "bench_scene.hpp"
+#include "bench/report.hpp"
+#include "bench/scene_bench.hpp"
 #include "exit_code.hpp"
 #include "peer/embree.hpp"
 #include "scene_source.hpp"
 #include "session.hpp"
 
 #include <raywise/core/nearest_word.hpp>
+#include <raywise/core/rng.hpp>
 
 #include <fmt/format.h>
 
@@ -65,9 +66,9 @@ BenchParams params_of(const BenchOptions& options, const Session& session) {
     params.workload.seed = static_cast<std::uint64_t>(session.options.seed);
     params.workload.paths = options.quick ? std::size_t{1} << 16U : std::size_t{1} << 18U;
     params.workload.emitters = options.quick ? 2 : 4;
-    params.budget_ms = options.quick ? 250 : 1500;
-    params.brute_force = options.quick ? 20'000'000 : 1'000'000'000;
-    params.is_robust_timed = !options.quick;
+    params.effort.budget_ms = options.quick ? 250 : 1500;
+    params.effort.brute_force = options.quick ? 4'000'000 : 50'000'000;
+    params.effort.is_thorough = !options.quick;
     if (options.paths > 0) params.workload.paths = options.paths;
     if (options.emitters > 0) params.workload.emitters = options.emitters;
     return params;
@@ -106,12 +107,18 @@ void run_bench(const BenchOptions& options, const Session& session) {
     const Executor trace(session.options.threads == 0 ? 1 : session.options.threads);
     const Progress progress = session.progress();
     SceneBench bench;
+    std::string titles;
+    std::uint64_t hash = 0;
     for (const SceneOptions& source : scenes) {
         const Scene scene = open_scene(source, session);
+        titles += (titles.empty() ? "" : ", ") + short_title(source);
+        hash = scenes.size() == 1 ? content_hash(scene) : mix_bits(hash ^ content_hash(scene));
         add_to(bench, bench_scene(short_title(source), scene, params, {build, trace}, progress));
     }
 
     Provenance provenance = session.provenance();
+    provenance.scene = titles;
+    provenance.scene_hash = hash;
     provenance.facts = {
         {"peer", "Embree " + embree_version()},
         {"trace_threads", fmt::format("{}", trace.threads())},

@@ -12,26 +12,6 @@ namespace raywise {
 
 namespace {
 
-constexpr std::size_t rays_per_chunk = 1024;
-
-/// Calls `is_wrong(i)` for every ray, in parallel, and counts.
-template <class IsWrong>
-std::size_t count_wrong(
-    std::size_t count,
-    std::size_t chunk,
-    const Executor& executor,
-    const IsWrong& is_wrong
-) {
-    std::atomic<std::size_t> wrong = 0;
-    executor.for_each_chunk(count, chunk, [&](std::size_t begin, std::size_t end) {
-        std::size_t in_chunk = 0;
-        for (std::size_t i = begin; i < end; ++i)
-            in_chunk += is_wrong(i) ? 1U : 0U;
-        wrong.fetch_add(in_chunk, std::memory_order_relaxed);
-    });
-    return wrong.load();
-}
-
 void require_same_size(std::size_t rays, std::size_t answers) {
     if (rays != answers) throw Error("as many answers as rays are needed");
 }
@@ -40,52 +20,50 @@ Hit or_miss(const std::optional<Hit>& hit) {
     return hit.value_or(Hit{});
 }
 
-bool is_far_apart(const Ray& ray, const Hit& found, const Hit& right) {
+bool is_same(const Hit& a, const Hit& b) {
+    return a.prim == b.prim && a.t == b.t;
+}
+
+bool is_far_off(const Ray& ray, const Hit& right, const Hit& found, double tolerance) {
     if ((found.prim == no_prim) != (right.prim == no_prim)) return true;
     if (right.prim == no_prim) return false;
-    const double t = static_cast<double>(right.t);
-    const Vec3d point = abs(to_double(ray.origin)) + abs(to_double(ray.direction)) * t;
-    const double reach = std::max({point.x, point.y, point.z}) / length(to_double(ray.direction));
-    return std::abs(static_cast<double>(found.t) - t) > loose_tolerance * std::max(t, reach);
+    const auto t = static_cast<double>(right.t);
+    const Vec3d reach = abs(to_double(ray.origin)) + abs(to_double(ray.direction)) * t;
+    const double scale = std::max({reach.x, reach.y, reach.z}) / length(to_double(ray.direction));
+    return std::abs(static_cast<double>(found.t) - t) > tolerance * std::max(t, scale);
 }
 
 } // namespace
 
-std::size_t count_wrong_hits(
-    const ExactOracle& oracle,
-    std::span<const Ray> rays,
-    std::span<const Hit> hits,
-    const Executor& executor
-) {
-    require_same_size(rays.size(), hits.size());
-    return count_wrong(rays.size(), rays_per_chunk, executor, [&](std::size_t i) {
-        const Hit right = or_miss(oracle.closest_hit(rays[i]));
-        return hits[i].prim != right.prim || hits[i].t != right.t;
-    });
+std::size_t count_wrong(std::span<const Hit> right, std::span<const Hit> found) {
+    require_same_size(right.size(), found.size());
+    std::size_t wrong = 0;
+    for (std::size_t i = 0; i < right.size(); ++i)
+        wrong += is_same(right[i], found[i]) ? 0U : 1U;
+    return wrong;
 }
 
-std::size_t count_wrong_occlusions(
-    const ExactOracle& oracle,
-    std::span<const Ray> rays,
-    std::span<const bool> occluded,
-    const Executor& executor
-) {
-    require_same_size(rays.size(), occluded.size());
-    return count_wrong(rays.size(), rays_per_chunk, executor, [&](std::size_t i) {
-        return occluded[i] != oracle.any_hit(rays[i]);
-    });
+std::size_t count_wrong(std::span<const bool> right, std::span<const bool> found) {
+    require_same_size(right.size(), found.size());
+    std::size_t wrong = 0;
+    for (std::size_t i = 0; i < right.size(); ++i)
+        wrong += right[i] == found[i] ? 0U : 1U;
+    return wrong;
 }
 
-std::size_t count_grossly_wrong_hits(
-    const ExactOracle& oracle,
+std::size_t count_far_off(
     std::span<const Ray> rays,
-    std::span<const Hit> hits,
-    const Executor& executor
+    std::span<const Hit> right,
+    std::span<const Hit> found,
+    double tolerance
 ) {
-    require_same_size(rays.size(), hits.size());
-    return count_wrong(rays.size(), rays_per_chunk, executor, [&](std::size_t i) {
-        return is_far_apart(rays[i], hits[i], or_miss(oracle.closest_hit(rays[i])));
-    });
+    require_same_size(rays.size(), right.size());
+    require_same_size(rays.size(), found.size());
+    if (!(tolerance > 0)) throw Error("count far off: the tolerance must be positive");
+    std::size_t wrong = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i)
+        wrong += is_far_off(rays[i], right[i], found[i], tolerance) ? 1U : 0U;
+    return wrong;
 }
 
 std::size_t count_wrong_oracle_answers(
@@ -96,13 +74,15 @@ std::size_t count_wrong_oracle_answers(
     const Executor& executor
 ) {
     samples = std::min(samples, rays.size());
-    return count_wrong(samples, 1, executor, [&](std::size_t i) {
+    std::atomic<std::size_t> wrong = 0;
+    executor.for_each_chunk(samples, 1, [&](std::size_t i, std::size_t) {
         const Ray& ray = rays[i * rays.size() / samples];
         const Hit right = or_miss(brute_force_closest_hit(triangles, ray));
-        const Hit found = or_miss(oracle.closest_hit(ray));
-        return found.prim != right.prim || found.t != right.t ||
-               oracle.any_hit(ray) != (right.prim != no_prim);
+        const bool is_wrong = !is_same(right, or_miss(oracle.closest_hit(ray))) ||
+                              oracle.any_hit(ray) != (right.prim != no_prim);
+        if (is_wrong) wrong.fetch_add(1, std::memory_order_relaxed);
     });
+    return wrong.load();
 }
 
 } // namespace raywise

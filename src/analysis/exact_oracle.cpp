@@ -27,4 +27,12 @@ void ExactOracle::closest_hits(
     raywise::closest_hits(tree_, triangles_, rays, hits, executor);
 }
 
+void ExactOracle::any_hits(
+    std::span<const Ray> rays,
+    std::span<bool> occluded,
+    const Executor& executor
+) const {
+    raywise::any_hits(tree_, triangles_, rays, occluded, executor);
+}
+
 } // namespace raywise

@@ -10,10 +10,16 @@ namespace raywise {
 
 namespace {
 
+template <class Watch>
 double nanoseconds_of(FunctionRef<void()> pass) {
-    const Stopwatch watch;
+    const Watch watch;
     pass();
     return watch.nanoseconds();
+}
+
+double nanoseconds_of(FunctionRef<void()> pass, TimedBy timed_by) {
+    return timed_by == TimedBy::thread ? nanoseconds_of<ThreadStopwatch>(pass)
+                                       : nanoseconds_of<Stopwatch>(pass);
 }
 
 } // namespace
@@ -47,11 +53,11 @@ SideBySide time_side_by_side(
     for (int round = 0; round < params.max_rounds; ++round) {
         if (round >= params.min_rounds && total.milliseconds() >= params.budget_ms) break;
         if (round % 2 == 0) {
-            first_ns.push_back(nanoseconds_of(first));
-            second_ns.push_back(nanoseconds_of(second));
+            first_ns.push_back(nanoseconds_of(first, params.timed_by));
+            second_ns.push_back(nanoseconds_of(second, params.timed_by));
         } else {
-            second_ns.push_back(nanoseconds_of(second));
-            first_ns.push_back(nanoseconds_of(first));
+            second_ns.push_back(nanoseconds_of(second, params.timed_by));
+            first_ns.push_back(nanoseconds_of(first, params.timed_by));
         }
     }
     return summarize_rounds(first_ns, second_ns);

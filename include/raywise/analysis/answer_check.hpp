@@ -1,4 +1,4 @@
-// Whether answers are right: those of every ray, judged by the exact oracle.
+// Whether answers are right: those of every ray, beside the answers of the exact oracle.
 #pragma once
 
 #include <raywise/analysis/exact_oracle.hpp>
@@ -11,35 +11,22 @@
 
 namespace raywise {
 
-/// What a tracer that promises nothing exact is held to: the triangle may be another one that the
-/// ray meets at nearly the same place, and t may be off by this share of itself, or of the longest
-/// coordinate of the hit point where the ray is long against its t.
-inline constexpr double loose_tolerance = 1e-4;
+/// The number of rays whose closest hit is not the right (t, prim), bit for bit. Throws Error when
+/// the sizes differ, as the other functions here.
+[[nodiscard]] std::size_t count_wrong(std::span<const Hit> right, std::span<const Hit> found);
 
-/// The number of rays whose closest hit is not (t, prim) of the oracle, bit for bit. Throws Error
-/// when the sizes differ.
-[[nodiscard]] std::size_t count_wrong_hits(
-    const ExactOracle& oracle,
-    std::span<const Ray> rays,
-    std::span<const Hit> hits,
-    const Executor& executor = serial_executor()
-);
+/// The number of rays whose occlusion is not the right one.
+[[nodiscard]] std::size_t count_wrong(std::span<const bool> right, std::span<const bool> found);
 
-/// The number of rays for which `occluded` says the opposite of the oracle.
-[[nodiscard]] std::size_t count_wrong_occlusions(
-    const ExactOracle& oracle,
+/// For tracers that compute in floats and promise nothing exact: the number of rays whose closest
+/// hit lies more than `tolerance` (> 0) away from the right one, as a share of t or, where that is
+/// more, of the largest coordinate that the ray's arithmetic meets. A hit instead of a miss, or the
+/// reverse, is always wrong; another triangle at the same place is not.
+[[nodiscard]] std::size_t count_far_off(
     std::span<const Ray> rays,
-    std::span<const bool> occluded,
-    const Executor& executor = serial_executor()
-);
-
-/// The number of rays whose closest hit is not that of the oracle within `loose_tolerance` in t:
-/// for tracers that compute in floats. A hit instead of a miss, or the reverse, is always wrong.
-[[nodiscard]] std::size_t count_grossly_wrong_hits(
-    const ExactOracle& oracle,
-    std::span<const Ray> rays,
-    std::span<const Hit> hits,
-    const Executor& executor = serial_executor()
+    std::span<const Hit> right,
+    std::span<const Hit> found,
+    double tolerance = 1e-4
 );
 
 /// The number of the oracle's own answers, out of `samples` rays spread over all, that brute force

@@ -37,6 +37,13 @@ public:
         const Executor& executor = serial_executor()
     ) const;
 
+    /// occluded[i] tells whether rays[i] has a hit. Throws Error when the sizes differ.
+    void any_hits(
+        std::span<const Ray> rays,
+        std::span<bool> occluded,
+        const Executor& executor = serial_executor()
+    ) const;
+
 private:
     Bvh tree_;
     PackedTriangles triangles_;

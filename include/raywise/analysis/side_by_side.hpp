@@ -4,14 +4,22 @@
 
 #include <raywise/core/function_ref.hpp>
 
+#include <cstdint>
 #include <span>
 
 namespace raywise {
 
+/// Whose time counts.
+enum class TimedBy : std::uint8_t {
+    wall,  ///< everybody's: passes that use several threads
+    thread ///< the calling thread's own: what other programs take from it does not count
+};
+
 struct SideBySideParams {
     int min_rounds = 3;     ///< timed pairs, at least; >= 1
     int max_rounds = 21;    ///< at most; >= min_rounds
-    double budget_ms = 500; ///< no further round is started after this much time; >= 0
+    double budget_ms = 500; ///< no further round is started after this much wall time; >= 0
+    TimedBy timed_by = TimedBy::wall;
 };
 
 /// What the rounds gave.

@@ -54,32 +54,48 @@ TEST_F(AnswerCheck, BruteForceOverOtherTrianglesContradictsTheOracle) {
 }
 
 TEST_F(AnswerCheck, EveryWrongAnswerIsCounted) {
-    EXPECT_EQ(count_wrong_hits(oracle, rays, hits), 0U);
+    std::vector<Hit> found = hits;
+    EXPECT_EQ(count_wrong(hits, found), 0U);
+    EXPECT_EQ(count_far_off(rays, hits, found), 0U);
     const std::size_t i = some_hit();
-    hits[i].t = std::nextafter(hits[i].t, 0.0F);
-    EXPECT_EQ(count_wrong_hits(oracle, rays, hits), 1U);
-    EXPECT_EQ(count_grossly_wrong_hits(oracle, rays, hits), 0U);
-    hits[i] = {};
-    EXPECT_EQ(count_wrong_hits(oracle, rays, hits), 1U);
-    EXPECT_EQ(count_grossly_wrong_hits(oracle, rays, hits), 1U);
+    found[i].t = std::nextafter(found[i].t, 0.0F);
+    EXPECT_EQ(count_wrong(hits, found), 1U);
+    EXPECT_EQ(count_far_off(rays, hits, found), 0U);
+    found[i] = {};
+    EXPECT_EQ(count_wrong(hits, found), 1U);
+    EXPECT_EQ(count_far_off(rays, hits, found), 1U);
 }
 
-TEST_F(AnswerCheck, OcclusionsAreJudgedTheSameWay) {
+TEST_F(AnswerCheck, ATriangleAtTheSamePlaceIsNotFarOffButWrong) {
+    std::vector<Hit> found = hits;
+    found[some_hit()].prim = PrimId{299};
+    EXPECT_EQ(count_wrong(hits, found), 1U);
+    EXPECT_EQ(count_far_off(rays, hits, found), 0U);
+    found[some_hit()].t *= 1.5F;
+    EXPECT_EQ(count_far_off(rays, hits, found), 1U);
+    EXPECT_EQ(count_far_off(rays, hits, found, 10), 0U);
+}
+
+TEST_F(AnswerCheck, OcclusionsOfTheOracleAreThoseOfItsClosestHits) {
     const auto occluded = std::make_unique<bool[]>(rays.size());
-    for (std::size_t i = 0; i < rays.size(); ++i)
-        occluded[i] = hits[i].prim != no_prim;
+    const auto expected = std::make_unique<bool[]>(rays.size());
     const std::span<bool> answers(occluded.get(), rays.size());
-    EXPECT_EQ(count_wrong_occlusions(oracle, rays, answers), 0U);
+    const std::span<bool> right(expected.get(), rays.size());
+    oracle.any_hits(rays, answers, Executor(2));
+    for (std::size_t i = 0; i < rays.size(); ++i)
+        right[i] = hits[i].prim != no_prim;
+    EXPECT_EQ(count_wrong(std::span<const bool>(right), std::span<const bool>(answers)), 0U);
     answers[7] = !answers[7];
     answers[499] = !answers[499];
-    EXPECT_EQ(count_wrong_occlusions(oracle, rays, answers, Executor(2)), 2U);
+    EXPECT_EQ(count_wrong(std::span<const bool>(right), std::span<const bool>(answers)), 2U);
 }
 
 TEST_F(AnswerCheck, AsManyAnswersAsRaysAreNeeded) {
-    hits.pop_back();
-    EXPECT_THROW(static_cast<void>(count_wrong_hits(oracle, rays, hits)), Error);
-    EXPECT_THROW(static_cast<void>(count_grossly_wrong_hits(oracle, rays, hits)), Error);
-    EXPECT_THROW(static_cast<void>(count_wrong_occlusions(oracle, rays, {})), Error);
+    const std::span<const Hit> fewer = std::span<const Hit>(hits).subspan(1);
+    EXPECT_THROW(static_cast<void>(count_wrong(hits, fewer)), Error);
+    EXPECT_THROW(static_cast<void>(count_far_off(rays, hits, fewer)), Error);
+    EXPECT_THROW(static_cast<void>(count_far_off(rays, fewer, hits)), Error);
+    EXPECT_THROW(static_cast<void>(count_far_off(rays, hits, hits, 0)), Error);
 }
 
 } // namespace

@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace raywise {
@@ -60,6 +62,23 @@ TEST(TimeSideBySide, StopsAtTheBudgetButNotBeforeTheLeastRounds) {
             .rounds,
         7
     );
+}
+
+TEST(TimeSideBySide, ByThreadTimeWaitingCostsNothing) {
+    volatile double sum = 0;
+    const auto works = [&] {
+        for (int i = 0; i < 1'000'000; ++i)
+            sum = sum + 1;
+    };
+    const auto works_and_waits = [&] {
+        works();
+        std::this_thread::sleep_for(std::chrono::milliseconds(30));
+    };
+    const SideBySide by_thread = time_side_by_side(
+        works, works_and_waits, {.min_rounds = 5, .max_rounds = 5, .timed_by = TimedBy::thread}
+    );
+    EXPECT_LT(by_thread.ratio, 3);
+    EXPECT_GT(time_side_by_side(works, works_and_waits).ratio, 3);
 }
 
 TEST(TimeSideBySide, ParametersOutOfRangeAreRefused) {

@@ -1,10 +1,7 @@
-// One scene of `raywise bench`: rays per second beside Embree, class by class, verified first.
+// What `raywise bench` measures, as plain data.
 #pragma once
 
 #include <raywise/analysis/ray_workload.hpp>
-#include <raywise/core/executor.hpp>
-#include <raywise/core/progress.hpp>
-#include <raywise/scene/scene.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -15,20 +12,6 @@
 
 namespace raywise::app {
 
-struct BenchParams {
-    WorkloadParams workload;
-    std::vector<RayClass> classes;
-    double budget_ms = 0;        ///< of each timed pair
-    std::size_t brute_force = 0; ///< triangle tests that a class may take to check the oracle
-    bool is_robust_timed = true; ///< also beside Embree's robust scene
-};
-
-/// Where rays are traced and structures are built.
-struct BenchMachine {
-    const Executor& build;
-    const Executor& trace;
-};
-
 /// Which of Embree's ways stands beside us.
 enum class Peer : std::uint8_t {
     single, ///< one ray per call on both sides
@@ -36,15 +19,18 @@ enum class Peer : std::uint8_t {
 };
 
 /// "embree_single", "embree_best".
-[[nodiscard]] std::string_view name_of(Peer peer);
+[[nodiscard]] constexpr std::string_view name_of(Peer peer) {
+    return peer == Peer::single ? "embree_single" : "embree_best";
+}
 
+/// Rays of one class in one scene, traced by both sides.
 struct BenchRow {
     std::string scene;
     std::uint64_t scene_hash = 0;
     std::size_t triangles = 0;
     RayClass rays = RayClass::primary;
     Peer peer = Peer::single;
-    std::size_t count = 0; ///< rays
+    std::size_t count = 0; ///< rays; with none, nothing is timed
     std::uint64_t ray_hash = 0;
     double hit_share = 0;
     double ours_mrays = 0;
@@ -54,11 +40,11 @@ struct BenchRow {
     int rounds = 0;
     std::string peer_call;                     ///< what the peer was called with
     std::optional<double> ratio_robust = {};   ///< the same beside RTC_SCENE_FLAG_ROBUST
-    std::optional<double> ratio_sorted = {};   ///< rays sorted beforehand on both sides
+    std::optional<double> ratio_sorted = {};   ///< rays sorted beforehand, for both sides
     std::optional<double> searched_mrays = {}; ///< ours when it must find the area itself
     std::size_t mismatches = 0;                ///< answers of ours that the oracle contradicts
     std::size_t peer_wrong = 0;                ///< answers of the peer's
-    std::size_t brute_forced = 0;              ///< rays on which the oracle was checked
+    std::size_t brute_forced = 0;              ///< rays on which the oracle itself was checked
     double node_visits = 0;                    ///< per ray
     double triangle_tests = 0;                 ///< per ray
 };
@@ -73,19 +59,34 @@ struct BuildRow {
     std::size_t bytes = 0;
 };
 
+/// Exact rays after which building an area's structure and tracing through it beats an already
+/// built Embree scene, everything on the tracing threads.
+struct BreakEvenRow {
+    std::string scene;
+    RayClass rays = RayClass::sun;
+    Peer peer = Peer::single;
+    double build_ms = 0;                          ///< of one emitter's structure, mean
+    double ours_ns = 0;                           ///< per ray
+    double peer_ns = 0;                           ///< per ray
+    std::optional<double> rays_per_triangle = {}; ///< absent: never
+};
+
+/// What the machine's memory allows: a query needs at least one cell and one triangle record, two
+/// dependent loads.
+struct LimitRow {
+    std::string scene;
+    std::size_t bytes = 0;      ///< of one exact area's structure
+    double load_ns = 0;         ///< of a dependent random load in so many bytes
+    double stream_gb_per_s = 0; ///< of a pass over so many bytes
+    double ours_ns = 0;         ///< per exact ray, one per call, geometric mean of the classes
+    double share = 0;           ///< two loads over that
+};
+
 struct SceneBench {
     std::vector<BenchRow> rows;
     std::vector<BuildRow> builds;
+    std::vector<BreakEvenRow> break_even;
+    std::vector<LimitRow> limits;
 };
-
-/// Builds both sides, checks every answer, times. Throws Error where the parts do, Cancelled when
-/// stopped.
-[[nodiscard]] SceneBench bench_scene(
-    const std::string& title,
-    const Scene& scene,
-    const BenchParams& params,
-    const BenchMachine& machine,
-    const Progress& progress
-);
 
 } // namespace raywise::app

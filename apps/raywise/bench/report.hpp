@@ -1,7 +1,7 @@
 // What `raywise bench` measured as a report: a table people can read, or all columns for programs.
 #pragma once
 
-#include "bench_scene.hpp"
+#include "bench/rows.hpp"
 
 #include <raywise/io/report.hpp>
 
