@@ -19,6 +19,7 @@
 #include <raywise/build/binned.hpp>                  // IWYU pragma: export
 #include <raywise/build/binned_params.hpp>           // IWYU pragma: export
 #include <raywise/build/bins.hpp>                    // IWYU pragma: export
+#include <raywise/build/cut_triangle.hpp>            // IWYU pragma: export
 #include <raywise/build/few_ranks.hpp>               // IWYU pragma: export
 #include <raywise/build/guided.hpp>                  // IWYU pragma: export
 #include <raywise/build/guided_params.hpp>           // IWYU pragma: export
@@ -27,8 +28,11 @@
 #include <raywise/build/plane_scan.hpp>              // IWYU pragma: export
 #include <raywise/build/prim_box.hpp>                // IWYU pragma: export
 #include <raywise/build/quad.hpp>                    // IWYU pragma: export
+#include <raywise/build/slot_ranks.hpp>              // IWYU pragma: export
 #include <raywise/build/spatial.hpp>                 // IWYU pragma: export
+#include <raywise/build/spatial_bins.hpp>            // IWYU pragma: export
 #include <raywise/build/spatial_params.hpp>          // IWYU pragma: export
+#include <raywise/build/spatial_split.hpp>           // IWYU pragma: export
 #include <raywise/build/split.hpp>                   // IWYU pragma: export
 #include <raywise/build/sweep.hpp>                   // IWYU pragma: export
 #include <raywise/build/top_down.hpp>                // IWYU pragma: export
@@ -101,6 +105,8 @@
 #include <raywise/optimize/child_order.hpp>          // IWYU pragma: export
 #include <raywise/optimize/collapse.hpp>             // IWYU pragma: export
 #include <raywise/optimize/depth_first.hpp>          // IWYU pragma: export
+#include <raywise/optimize/loose_tree.hpp>           // IWYU pragma: export
+#include <raywise/optimize/reinsertion.hpp>          // IWYU pragma: export
 #include <raywise/pencil/pencil.hpp>                 // IWYU pragma: export
 #include <raywise/pencil/pencil_grid.hpp>            // IWYU pragma: export
 #include <raywise/pencil/pencil_grid_params.hpp>     // IWYU pragma: export

@@ -10,6 +10,7 @@
 #include <raywise/build/spatial.hpp>
 #include <raywise/core/rng.hpp>
 #include <raywise/geometry/hit_measure.hpp>
+#include <raywise/optimize/reinsertion.hpp>
 #include <raywise/trace/all_hits.hpp>
 #include <raywise/trace/any_hit.hpp>
 #include <raywise/trace/brute_force.hpp>
@@ -161,10 +162,14 @@ Outcome check_scene(std::uint64_t seed, std::uint64_t index) {
     const Bvh halves = median_split(view, 1 + index % 4);
     const Bvh binned = build_binned(boxes, SurfaceMeasure{});
     // Small leaves and much room, so that as many triangles as possible are cut, again and again.
-    const Bvh cut = build_spatial(
-        view,
+    const Bvh cut = reinsert(
+        build_spatial(
+            view,
+            SurfaceMeasure{},
+            {.binned = {.max_leaf_size = 1, .cost = {.node = 0.01}}, .duplication = 8}
+        ),
         SurfaceMeasure{},
-        {.binned = {.max_leaf_size = 1, .cost = {.node = 0.01}}, .duplication = 8}
+        {.batch = 1}
     );
     Outcome outcome;
     for (; outcome.rays < rays_per_scene; ++outcome.rays) {
