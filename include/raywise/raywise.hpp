@@ -107,6 +107,7 @@
 #include <raywise/optimize/depth_first.hpp>          // IWYU pragma: export
 #include <raywise/optimize/loose_tree.hpp>           // IWYU pragma: export
 #include <raywise/optimize/reinsertion.hpp>          // IWYU pragma: export
+#include <raywise/pencil/inversion.hpp>              // IWYU pragma: export
 #include <raywise/pencil/pencil.hpp>                 // IWYU pragma: export
 #include <raywise/pencil/pencil_grid.hpp>            // IWYU pragma: export
 #include <raywise/pencil/pencil_grid_params.hpp>     // IWYU pragma: export
