@@ -1,7 +1,9 @@
 // raywise bench: rays per second beside Embree, same rays, verified answers.
+#include "bench/chart.hpp"
 #include "bench/report.hpp"
 #include "bench/scene_bench.hpp"
 #include "exit_code.hpp"
+#include "output.hpp"
 #include "peer/embree.hpp"
 #include "scene_source.hpp"
 #include "session.hpp"
@@ -24,6 +26,7 @@ struct BenchOptions {
     std::vector<std::string> scenes;
     SceneOptions common;
     std::string classes;
+    std::string chart;
     bool quick = false;
     std::size_t paths = 0;
     int emitters = 0;
@@ -101,6 +104,8 @@ void run_bench(const BenchOptions& options, const Session& session) {
         throw UsageError(
             "bench measures beside Embree, which this raywise was built without (libembree-dev)"
         );
+    if (!options.chart.empty() && !options.chart.ends_with(".svg"))
+        throw UsageError("--chart writes SVG: a name that ends in .svg is needed");
     const BenchParams params = params_of(options, session);
     const std::vector<SceneOptions> scenes = scenes_of(options);
     const Executor build = session.executor();
@@ -125,6 +130,19 @@ void run_bench(const BenchOptions& options, const Session& session) {
         {"paths", fmt::format("{}", params.workload.paths)},
         {"emitters", fmt::format("{}", params.workload.emitters)},
     };
+    if (!options.chart.empty()) {
+        const std::string caption = fmt::format(
+            "raywise {}, Embree {}, {}, seed {}, {} tracing thread{}",
+            provenance.version,
+            embree_version(),
+            provenance.cpu,
+            provenance.seed,
+            trace.threads(),
+            trace.threads() == 1 ? "" : "s"
+        );
+        session.put_files([&] { put(options.chart, draw_chart(bench.rows, caption)); });
+        session.console.message(options.chart + ": chart written");
+    }
     session.put_report(
         report_of(bench, report_format(session.options.format), std::move(provenance)),
         session.options.output
@@ -154,6 +172,9 @@ Command add_bench(CLI::App& root, CommonOptions& options) {
         own->classes,
         "Ray classes, such as primary,sun; without it all: " +
             fmt::format("{}", fmt::join(class_names(), ", "))
+    );
+    app->add_option(
+        "--chart", own->chart, "Write a chart (.svg): one bar per scene and class of rays"
     );
     app->add_flag("--quick", own->quick, "Fewer rays, emitters and rounds: seconds per scene");
     app->add_option("--paths", own->paths, "Paths per scene; 0: 262144, with --quick 65536")

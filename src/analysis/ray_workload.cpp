@@ -475,7 +475,6 @@ private:
         };
         for (const Paths& paths : paths_) {
             for (std::size_t i = 0; i < paths.primary.size(); ++i) {
-                if (i / tile_paths % emitters() != number) continue;
                 add(paths.first[i]);
                 add(paths.second[i]);
             }

@@ -1,3 +1,4 @@
+#include "bench/goals.hpp"
 #include "bench/report.hpp"
 
 #include <raywise/analysis/statistics.hpp>
@@ -185,12 +186,6 @@ std::vector<std::string> findings_of(const SceneBench& bench) {
 }
 
 } // namespace
-
-std::optional<Goal> goal_of(RayKind kind, Peer peer) {
-    if (kind == RayKind::exact) return peer == Peer::single ? Goal{4, 2} : Goal{2, 1.2};
-    if (peer == Peer::best) return std::nullopt;
-    return kind == RayKind::near_affine ? Goal{1.5, 1} : Goal{1, 0.9};
-}
 
 Report report_of(const SceneBench& bench, ReportFormat format, Provenance provenance) {
     Report report;

@@ -84,7 +84,7 @@ struct Workload {
 /// pictures of 1024 x 1024 pixels, of which a random choice of tiles (16 x 16) is traced in order;
 /// every path is a primary ray, a diffuse bounce from its hit, and from both hits shadow rays to
 /// the emitters in front of the surface. Shadow rays lie in the order of the paths, the one from
-/// the primary hit before the one from the bounce's; every path serves one emitter of each class.
+/// the primary hit before the one from the bounce's.
 ///
 /// Eyes and lamps with an even number stand outside on a sphere of 0.75 scene diagonals, at least
 /// 6 degrees above the horizon; those with an odd number at open places inside
