@@ -1,6 +1,7 @@
 // raywise bench: rays per second beside Embree, same rays, verified answers.
 #include "bench/chart.hpp"
 #include "bench/report.hpp"
+#include "bench/scaling.hpp"
 #include "bench/scene_bench.hpp"
 #include "exit_code.hpp"
 #include "output.hpp"
@@ -28,9 +29,13 @@ struct BenchOptions {
     std::string classes;
     std::string chart;
     bool quick = false;
+    bool scaling = false;
     std::size_t paths = 0;
     int emitters = 0;
 };
+
+// Bytes per triangle of both sides' structures, an accelerator's areas among them.
+constexpr std::uint64_t bytes_per_triangle = 3000;
 
 std::vector<std::string> class_names() {
     std::vector<std::string> names;
@@ -65,25 +70,42 @@ std::vector<RayClass> parse_classes(const std::string& text) {
 
 BenchParams params_of(const BenchOptions& options, const Session& session) {
     BenchParams params;
-    params.classes = parse_classes(options.classes);
+    params.classes = options.scaling && options.classes.empty()
+                         ? std::vector{RayClass::primary, RayClass::sun, RayClass::diffuse_bounce}
+                         : parse_classes(options.classes);
     params.workload.seed = static_cast<std::uint64_t>(session.options.seed);
     params.workload.paths = options.quick ? std::size_t{1} << 16U : std::size_t{1} << 18U;
     params.workload.emitters = options.quick ? 2 : 4;
     params.effort.budget_ms = options.quick ? 250 : 1500;
     params.effort.brute_force = options.quick ? 4'000'000 : 50'000'000;
-    params.effort.is_thorough = !options.quick;
+    params.effort.is_thorough = !options.quick && !options.scaling;
     if (options.paths > 0) params.workload.paths = options.paths;
     if (options.emitters > 0) params.workload.emitters = options.emitters;
     return params;
 }
 
+/// The arguments, or the generated scenes whose sizes are to grow.
+std::vector<std::string> arguments_of(const BenchOptions& options) {
+    if (!options.scaling) {
+        if (options.scenes.empty())
+            throw UsageError(
+                "a scene is needed: a file, a folder, or a generated one such as city:100000"
+            );
+        return options.scenes;
+    }
+    for (const std::string& name : options.scenes)
+        if (name.find(':') != std::string::npos || scenes_named(name, {}).front().recipe.empty())
+            throw UsageError("--scaling takes names of generated scenes without sizes, such as city"
+            );
+    const std::vector<std::string> names =
+        options.scenes.empty() ? std::vector<std::string>{"city", "forest", "terrain"}
+                               : options.scenes;
+    return series_of(names, options.quick ? 1'000'000 : 10'000'000);
+}
+
 std::vector<SceneOptions> scenes_of(const BenchOptions& options) {
-    if (options.scenes.empty())
-        throw UsageError(
-            "a scene is needed: a file, a folder, or a generated one such as city:100000"
-        );
     std::vector<SceneOptions> scenes;
-    for (const std::string& argument : options.scenes)
+    for (const std::string& argument : arguments_of(options))
         for (SceneOptions& scene : scenes_named(argument, options.common))
             scenes.push_back(std::move(scene));
     return scenes;
@@ -94,9 +116,63 @@ std::string short_title(const SceneOptions& scene) {
     return scene.recipe.empty() ? std::filesystem::path(scene.file).stem().string() : scene.recipe;
 }
 
-void add_to(SceneBench& all, SceneBench&& one) {
-    all.rows.insert(all.rows.end(), one.rows.begin(), one.rows.end());
-    all.builds.insert(all.builds.end(), one.builds.begin(), one.builds.end());
+template <class Row>
+void append(std::vector<Row>& all, const std::vector<Row>& more) {
+    all.insert(all.end(), more.begin(), more.end());
+}
+
+void append(SceneBench& all, const SceneBench& one) {
+    append(all.rows, one.rows);
+    append(all.builds, one.builds);
+    append(all.break_even, one.break_even);
+    append(all.limits, one.limits);
+    append(all.threads, one.threads);
+}
+
+/// All scenes, one after the other; their names and hashes go into the provenance.
+SceneBench bench_scenes(
+    const std::vector<SceneOptions>& scenes,
+    const BenchOptions& options,
+    const BenchMachine& machine,
+    const Session& session,
+    Provenance& provenance
+) {
+    const BenchParams params = params_of(options, session);
+    const Progress progress = session.progress();
+    SceneBench bench;
+    for (const SceneOptions& source : scenes) {
+        const Scene scene = open_scene(source, session);
+        require_memory(source, scene.triangles.size() * bytes_per_triangle, "measuring");
+        const std::string title = short_title(source);
+        append(bench, bench_scene(title, scene, params, machine, progress));
+        if (options.scaling && &source == &scenes.back())
+            append(
+                bench.threads,
+                bench_threads(title, scene, params.workload, params.effort, machine.build, progress)
+            );
+        const std::uint64_t hash = content_hash(scene);
+        provenance.scene += (provenance.scene.empty() ? "" : ", ") + title;
+        provenance.scene_hash = scenes.size() == 1 ? hash : mix_bits(provenance.scene_hash ^ hash);
+    }
+    if (options.scaling) bench.growth = growth_of(bench.rows);
+    provenance.facts = {
+        {"peer", "Embree " + embree_version()},
+        {"trace_threads", fmt::format("{}", machine.trace.threads())},
+        {"paths", fmt::format("{}", params.workload.paths)},
+        {"emitters", fmt::format("{}", params.workload.emitters)},
+        {"shadow_ray_offset", fmt::format("{} scene diagonals", params.workload.offset)},
+    };
+    return bench;
+}
+
+std::string chart_caption(const Provenance& provenance) {
+    return fmt::format(
+        "raywise {}, Embree {}, {}, seed {}",
+        provenance.version,
+        embree_version(),
+        provenance.cpu,
+        provenance.seed
+    );
 }
 
 void run_bench(const BenchOptions& options, const Session& session) {
@@ -106,46 +182,19 @@ void run_bench(const BenchOptions& options, const Session& session) {
         );
     if (!options.chart.empty() && !options.chart.ends_with(".svg"))
         throw UsageError("--chart writes SVG: a name that ends in .svg is needed");
-    const BenchParams params = params_of(options, session);
     const std::vector<SceneOptions> scenes = scenes_of(options);
     const Executor build = session.executor();
     const Executor trace(session.options.threads == 0 ? 1 : session.options.threads);
-    const Progress progress = session.progress();
-    SceneBench bench;
-    std::string titles;
-    std::uint64_t hash = 0;
-    for (const SceneOptions& source : scenes) {
-        const Scene scene = open_scene(source, session);
-        titles += (titles.empty() ? "" : ", ") + short_title(source);
-        hash = scenes.size() == 1 ? content_hash(scene) : mix_bits(hash ^ content_hash(scene));
-        add_to(bench, bench_scene(short_title(source), scene, params, {build, trace}, progress));
-    }
-
     Provenance provenance = session.provenance();
-    provenance.scene = titles;
-    provenance.scene_hash = hash;
-    provenance.facts = {
-        {"peer", "Embree " + embree_version()},
-        {"trace_threads", fmt::format("{}", trace.threads())},
-        {"paths", fmt::format("{}", params.workload.paths)},
-        {"emitters", fmt::format("{}", params.workload.emitters)},
-    };
+    const SceneBench bench = bench_scenes(scenes, options, {build, trace}, session, provenance);
+
     if (!options.chart.empty()) {
-        const std::string caption = fmt::format(
-            "raywise {}, Embree {}, {}, seed {}, {} tracing thread{}",
-            provenance.version,
-            embree_version(),
-            provenance.cpu,
-            provenance.seed,
-            trace.threads(),
-            trace.threads() == 1 ? "" : "s"
-        );
-        session.put_files([&] { put(options.chart, draw_chart(bench.rows, caption)); });
+        const std::string chart = draw_chart(bench.rows, chart_caption(provenance));
+        session.put_files([&] { put(options.chart, chart); });
         session.console.message(options.chart + ": chart written");
     }
     session.put_report(
-        report_of(bench, report_format(session.options.format), std::move(provenance)),
-        session.options.output
+        report_of(bench, report_format(session.options.format), provenance), session.options.output
     );
     std::size_t wrong = 0;
     for (const BenchRow& row : bench.rows)
@@ -177,6 +226,12 @@ Command add_bench(CLI::App& root, CommonOptions& options) {
         "--chart", own->chart, "Write a chart (.svg): one bar per scene and class of rays"
     );
     app->add_flag("--quick", own->quick, "Fewer rays, emitters and rounds: seconds per scene");
+    app->add_flag(
+        "--scaling",
+        own->scaling,
+        "Growth over generated scenes of 10^4 to 10^7 triangles (--quick: 10^6), and what threads "
+        "gain; SCENE: names such as city, by default city, forest and terrain"
+    );
     app->add_option("--paths", own->paths, "Paths per scene; 0: 262144, with --quick 65536")
         ->check(CLI::Range(std::size_t{0}, std::size_t{100'000'000}))
         ->capture_default_str();

@@ -8,6 +8,7 @@
 #include <raywise/analysis/estimated_cost.hpp>       // IWYU pragma: export
 #include <raywise/analysis/exact_oracle.hpp>         // IWYU pragma: export
 #include <raywise/analysis/memory.hpp>               // IWYU pragma: export
+#include <raywise/analysis/memory_speed.hpp>         // IWYU pragma: export
 #include <raywise/analysis/overlap.hpp>              // IWYU pragma: export
 #include <raywise/analysis/ray_order.hpp>            // IWYU pragma: export
 #include <raywise/analysis/ray_workload.hpp>         // IWYU pragma: export

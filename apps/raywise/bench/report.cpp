@@ -105,6 +105,65 @@ std::vector<ColumnOf<BuildRow>> build_columns() {
     };
 }
 
+std::vector<ColumnOf<BreakEvenRow>> break_even_columns() {
+    return {
+        {"scene", [](const BreakEvenRow& row) { return text(row.scene); }},
+        {"rays", [](const BreakEvenRow& row) { return text(name_of(row.rays)); }},
+        {"peer", [](const BreakEvenRow& row) { return text(name_of(row.peer)); }},
+        {"build_ms", [](const BreakEvenRow& row) { return Cell(row.build_ms); }},
+        {"ours_ns", [](const BreakEvenRow& row) { return Cell(row.ours_ns); }},
+        {"peer_ns", [](const BreakEvenRow& row) { return Cell(row.peer_ns); }},
+        {"rays_per_triangle", [](const BreakEvenRow& row) { return maybe(row.rays_per_triangle); }},
+    };
+}
+
+std::vector<ColumnOf<LimitRow>> limit_columns() {
+    return {
+        {"scene", [](const LimitRow& row) { return text(row.scene); }},
+        {"bytes", [](const LimitRow& row) { return count(row.bytes); }},
+        {"load_ns", [](const LimitRow& row) { return Cell(row.load_ns); }},
+        {"stream_gb_per_s", [](const LimitRow& row) { return Cell(row.stream_gb_per_s); }},
+        {"ours_ns", [](const LimitRow& row) { return Cell(row.ours_ns); }},
+        {"share", [](const LimitRow& row) { return Cell(row.share); }},
+    };
+}
+
+std::vector<ColumnOf<GrowthRow>> growth_columns() {
+    return {
+        {"scene", [](const GrowthRow& row) { return text(row.scene); }},
+        {"rays", [](const GrowthRow& row) { return text(name_of(row.rays)); }},
+        {"peer", [](const GrowthRow& row) { return text(name_of(row.peer)); }},
+        {"from_triangles", [](const GrowthRow& row) { return count(row.from_triangles); }},
+        {"to_triangles", [](const GrowthRow& row) { return count(row.to_triangles); }},
+        {"ours_growth", [](const GrowthRow& row) { return Cell(row.ours); }},
+        {"peer_growth", [](const GrowthRow& row) { return Cell(row.peer_growth); }},
+        {"growth_ratio", [](const GrowthRow& row) { return Cell(row.ours / row.peer_growth); }},
+    };
+}
+
+std::vector<ColumnOf<ThreadRow>> thread_columns() {
+    return {
+        {"scene", [](const ThreadRow& row) { return text(row.scene); }},
+        {"work", [](const ThreadRow& row) { return text(row.work); }},
+        {"threads", [](const ThreadRow& row) { return count(static_cast<unsigned>(row.threads)); }},
+        {"one_thread_ms", [](const ThreadRow& row) { return Cell(row.one_ms); }},
+        {"all_threads_ms", [](const ThreadRow& row) { return Cell(row.all_ms); }},
+        {"speedup", [](const ThreadRow& row) { return Cell(row.speedup); }},
+        {"spread", [](const ThreadRow& row) { return Cell(row.spread); }},
+    };
+}
+
+template <class Row>
+void add_table(
+    Report& report,
+    const char* key,
+    const char* title,
+    std::span<const Row> rows,
+    const std::vector<ColumnOf<Row>>& columns
+) {
+    if (!rows.empty()) report.more.push_back({key, title, table_of<Row>(rows, columns)});
+}
+
 /// Geometric mean of each scene's rows, then of the scenes: a scene with more classes counts no
 /// more than another.
 struct Means {
@@ -194,7 +253,35 @@ Report report_of(const SceneBench& bench, ReportFormat format, Provenance proven
     report.table = table_of<BenchRow>(
         bench.rows, format == ReportFormat::table ? deciding_columns() : all_columns()
     );
-    report.more.push_back({"builds", "Builds", table_of<BuildRow>(bench.builds, build_columns())});
+    add_table<BuildRow>(report, "builds", "Builds", bench.builds, build_columns());
+    add_table<BreakEvenRow>(
+        report,
+        "break_even",
+        "Exact rays per triangle after which building a pencil grid has paid (goal: 2)",
+        bench.break_even,
+        break_even_columns()
+    );
+    add_table<LimitRow>(
+        report,
+        "limits",
+        "Memory at the size of a pencil grid; share: two dependent loads over the time of a ray",
+        bench.limits,
+        limit_columns()
+    );
+    add_table<GrowthRow>(
+        report,
+        "growth",
+        "Growth of the time per ray from the smallest to the largest scene (goal: ratio 1)",
+        bench.growth,
+        growth_columns()
+    );
+    add_table<ThreadRow>(
+        report,
+        "threads",
+        "All threads over one (goal for two: 1.9 building, 1.95 tracing)",
+        bench.threads,
+        thread_columns()
+    );
     report.findings = findings_of(bench);
     report.provenance = std::move(provenance);
     return report;

@@ -82,11 +82,35 @@ struct LimitRow {
     double share = 0;           ///< two loads over that
 };
 
+/// How the time per ray grows over a series of one generated scene.
+struct GrowthRow {
+    std::string scene; ///< "city"
+    RayClass rays = RayClass::sun;
+    Peer peer = Peer::single;
+    std::size_t from_triangles = 0;
+    std::size_t to_triangles = 0;
+    double ours = 0;        ///< time per ray in the largest over that in the smallest
+    double peer_growth = 0; ///< the same of the peer
+};
+
+/// What several threads gain over one.
+struct ThreadRow {
+    std::string scene;
+    std::string work;
+    int threads = 1;
+    double one_ms = 0;
+    double all_ms = 0;
+    double speedup = 0;
+    double spread = 0; ///< see SideBySide
+};
+
 struct SceneBench {
     std::vector<BenchRow> rows;
     std::vector<BuildRow> builds;
     std::vector<BreakEvenRow> break_even;
     std::vector<LimitRow> limits;
+    std::vector<GrowthRow> growth;
+    std::vector<ThreadRow> threads;
 };
 
 } // namespace raywise::app

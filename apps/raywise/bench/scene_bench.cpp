@@ -1,11 +1,16 @@
 #include "bench/scene_bench.hpp"
 
+#include <raywise/analysis/memory_speed.hpp>
+#include <raywise/analysis/statistics.hpp>
 #include <raywise/analysis/stopwatch.hpp>
+#include <raywise/pencil/pencil_grid.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 #include <utility>
+#include <variant>
 
 namespace raywise::app {
 
@@ -42,10 +47,93 @@ public:
             bench_.rows.end(),
             [](const BenchRow& a, const BenchRow& b) { return a.rays < b.rays; }
         );
+        measure_grids();
         return std::move(bench_);
     }
 
 private:
+    /// The pencil grid of each exact area, as the accelerator builds it, on its own.
+    void measure_grids() {
+        const std::span<const BenchRow> rows(bench_.rows);
+        std::size_t largest = 0;
+        std::vector<double> exact_ns;
+        for (const ClassRays& rays : workload_.classes) {
+            if (kind_of(rays.rays) != RayKind::exact) continue;
+            const GridCost cost = build_grids(rays);
+            largest = std::max(largest, cost.bytes);
+            add_build(fmt::format("pencil grid, {}", name_of(rays.rays)), cost.all_ms, cost.bytes);
+            for (const BenchRow& row : rows) {
+                if (row.rays != rays.rays || row.rounds == 0) continue;
+                bench_.break_even.push_back(break_even_of(row, cost.traced_ms));
+                if (row.peer == Peer::single) exact_ns.push_back(1e3 / row.ours_mrays);
+            }
+        }
+        if (!exact_ns.empty()) bench_.limits.push_back(limit_of(largest, exact_ns));
+    }
+
+    /// Means over the emitters of a class.
+    struct GridCost {
+        double all_ms = 0;    ///< on the building threads
+        double traced_ms = 0; ///< on the tracing threads
+        std::size_t bytes = 0;
+    };
+
+    GridCost build_grids(const ClassRays& rays) {
+        step(fmt::format("building pencil grids, {}", name_of(rays.rays)));
+        GridCost cost;
+        for (const EmitterRays& of_emitter : rays.emitters) {
+            const Pencil pencil = pencil_of(area_named(of_emitter.area));
+            const Stopwatch all;
+            const PencilGrid grid = build_pencil_grid(scene_.view(), pencil, {}, machine_.build);
+            cost.all_ms += all.milliseconds();
+            cost.bytes += grid.size_in_bytes();
+            const Stopwatch traced;
+            static_cast<void>(build_pencil_grid(scene_.view(), pencil, {}, machine_.trace));
+            cost.traced_ms += traced.milliseconds();
+        }
+        const auto emitters = static_cast<double>(rays.emitters.size());
+        cost.all_ms /= emitters;
+        cost.traced_ms /= emitters;
+        cost.bytes /= rays.emitters.size();
+        return cost;
+    }
+
+    [[nodiscard]] BreakEvenRow break_even_of(const BenchRow& row, double build_ms) const {
+        BreakEvenRow result{title_, row.rays, row.peer, build_ms, 1e3 / row.ours_mrays, 0, {}};
+        result.peer_ns = result.ours_ns * row.ratio;
+        const double gain = result.peer_ns - result.ours_ns;
+        if (gain > 0)
+            result.rays_per_triangle =
+                build_ms * 1e6 / gain / static_cast<double>(scene_.triangles.size());
+        return result;
+    }
+
+    [[nodiscard]] LimitRow limit_of(std::size_t bytes, std::span<const double> exact_ns) const {
+        LimitRow row;
+        row.scene = title_;
+        row.bytes = bytes;
+        row.load_ns = measure_load_ns(bytes);
+        row.stream_gb_per_s = measure_stream_gb_per_s(bytes);
+        row.ours_ns = geometric_mean(exact_ns);
+        row.share = 2 * row.load_ns / row.ours_ns;
+        return row;
+    }
+
+    [[nodiscard]] const InfluenceArea& area_named(const std::string& name) const {
+        return *std::find_if(
+            workload_.areas.begin(),
+            workload_.areas.end(),
+            [&](const InfluenceArea& area) { return area.name == name; }
+        );
+    }
+
+    static Pencil pencil_of(const InfluenceArea& area) {
+        if (const auto* sun = std::get_if<ParallelDistribution>(&area.distribution))
+            return Pencil::parallel(to_float(sun->params().frame.forward));
+        const auto& lamp = std::get<RadialDistribution>(area.distribution);
+        return Pencil::radial(to_float(lamp.params().eye));
+    }
+
     Peers build_peers() {
         static_cast<void>(build_peer(PeerQuality::medium, false));
         Peers peers{build_peer(PeerQuality::high, false), {}};
@@ -87,8 +175,7 @@ private:
             if (!is_wanted(kind_of(rays.rays))) continue;
             classes.push_back(&rays);
             for (const EmitterRays& of_emitter : rays.emitters)
-                for (const InfluenceArea& area : workload_.areas)
-                    if (area.name == of_emitter.area) areas.push_back(area);
+                if (!of_emitter.area.empty()) areas.push_back(area_named(of_emitter.area));
         }
         if (classes.empty()) return;
         const std::string name = fmt::format("accelerator of {} areas", areas.size());
