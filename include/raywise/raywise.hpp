@@ -85,6 +85,7 @@
 #include <raywise/geometry/ray_triangle.hpp>         // IWYU pragma: export
 #include <raywise/geometry/region.hpp>               // IWYU pragma: export
 #include <raywise/geometry/sampling.hpp>             // IWYU pragma: export
+#include <raywise/geometry/segment_measure.hpp>      // IWYU pragma: export
 #include <raywise/geometry/separating_axis.hpp>      // IWYU pragma: export
 #include <raywise/geometry/shear_frame.hpp>          // IWYU pragma: export
 #include <raywise/geometry/silhouette.hpp>           // IWYU pragma: export
@@ -132,6 +133,7 @@
 #include <raywise/trace/closest_hit.hpp>             // IWYU pragma: export
 #include <raywise/trace/count_unpruned.hpp>          // IWYU pragma: export
 #include <raywise/trace/observer.hpp>                // IWYU pragma: export
+#include <raywise/trace/terminate.hpp>               // IWYU pragma: export
 #include <raywise/trace/traverse.hpp>                // IWYU pragma: export
 #include <raywise/trace/triangles.hpp>               // IWYU pragma: export
 #include <raywise/trace/wide.hpp>                    // IWYU pragma: export
