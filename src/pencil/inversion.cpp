@@ -62,7 +62,7 @@ void any_hits_once(
     std::fill(hits.begin(), hits.end(), false);
     if (rays.empty()) return;
     RayTiles tiles(pencil, rays, RaysAsked::all, executor);
-    draw_all({triangles, pencil, rays, tiles, hits.data()}, executor);
+    draw_all({triangles, pencil, rays, tiles, hits.data(), executor.threads() > 1}, executor);
 }
 
 void closest_hits_once(
@@ -79,7 +79,7 @@ void closest_hits_once(
     for (const RaysAsked asked : {RaysAsked::leaving, RaysAsked::arriving}) {
         RayTiles tiles(pencil, rays, asked, executor);
         if (tiles.seen > 0) {
-            const Raster raster{triangles, pencil, rays, tiles, nullptr};
+            const Raster raster{triangles, pencil, rays, tiles, nullptr, executor.threads() > 1};
             draw_all(raster, executor);
             gather(raster, hits, executor);
         }

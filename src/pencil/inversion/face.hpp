@@ -4,10 +4,11 @@
 
 #include <raywise/geometry/ray.hpp>
 #include <raywise/geometry/vec.hpp>
-#include <raywise/pencil/pencil.hpp>
 
-#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstring>
 
 namespace raywise::detail {
 
@@ -25,7 +26,6 @@ struct FaceRay {
     double start; ///< depth at t = 0
     double brink; ///< radial: a hit as near to the apex may be seen anywhere, or behind
     double scale; ///< with a depth: by how many units the rounding of t moves it
-    bool leaves;  ///< whether depth grows with t
 };
 
 class Face {
@@ -34,96 +34,101 @@ public:
     /// the scene, the more precise.
     static Face parallel(Vec3 direction, Vec3 origin, bool reversed) {
         const int z = dominant_axis(direction);
-        Face face(to_double(origin), z, direction[z] < 0 ? -1 : 1, false, reversed);
-        const Vec3d d = to_double(direction);
-        face.slope_x_ = d[face.x_] / d[z];
-        face.slope_y_ = d[face.y_] / d[z];
+        Face face(origin, z, direction[z] < 0 ? -1 : 1, reversed);
+        face.slope_x_ =
+            face.difference(direction, face.x_, 0) / face.difference(direction, face.z_, 0);
+        face.slope_y_ =
+            face.difference(direction, face.y_, 0) / face.difference(direction, face.z_, 0);
         return face;
     }
 
     /// The face of the cube around the apex on side `index % 2` of axis `index / 2`.
     static Face radial(Vec3 apex, int index, bool reversed) {
-        return {to_double(apex), index / 2, index % 2 == 0 ? 1 : -1, true, reversed};
+        return {apex, index / 2, index % 2 == 0 ? 1 : -1, reversed};
     }
-
-    [[nodiscard]] bool is_radial() const { return radial_; }
 
     [[nodiscard]] bool is_reversed() const { return depth_sign_ != sign_; }
 
-    /// Whether depth grows along the world's axis.
-    [[nodiscard]] double sign() const { return sign_; }
-
-    [[nodiscard]] FacePoint point(Vec3 p) const {
-        const Vec3d d = to_double(p) - origin_;
-        const double along = d[z_];
-        const double depth = along * depth_sign_;
-        if (radial_) return {d[x_], d[y_], along * sign_, depth};
-        return {d[x_] - slope_x_ * along, d[y_] - slope_y_ * along, 1, depth};
+    template <bool is_radial>
+    [[nodiscard]] FacePoint point(const Vec3& p) const {
+        const double x = difference(p, x_, origin_[0]);
+        const double y = difference(p, y_, origin_[1]);
+        const double along = difference(p, z_, origin_[2]);
+        if constexpr (is_radial) {
+            return {x, y, along * sign_, along * depth_sign_};
+        } else {
+            return {x - slope_x_ * along, y - slope_y_ * along, 1, along * depth_sign_};
+        }
     }
 
-    /// For a valid ray of the pencil, seen by this face.
-    [[nodiscard]] FaceRay ray(const Ray& ray) const {
-        const double speed = std::abs(static_cast<double>(ray.direction[z_]));
+    /// For a valid ray of the pencil that this face sees; `leaves`: it runs away from the emitter.
+    template <bool is_radial>
+    [[nodiscard]] FaceRay ray(const Ray& ray, bool leaves) const {
+        const double speed = std::abs(difference(ray.direction, z_, 0));
         const auto t_min = static_cast<double>(ray.t_min);
         const auto t_max = static_cast<double>(ray.t_max);
-        const FacePoint from = point(ray.origin);
-        const bool at_apex = radial_ && from.h == 0;
+        const FacePoint from = point<is_radial>(ray.origin);
         FaceRay seen{};
-        if (at_apex) {
-            const Vec3d d = to_double(ray.direction);
-            seen.u = d[x_] / speed;
-            seen.v = d[y_] / speed;
+        if (!is_radial) {
+            seen.u = from.x;
+            seen.v = from.y;
+        } else if (leaves) {
+            const double inverse = 1 / speed;
+            seen.u = difference(ray.direction, x_, 0) * inverse;
+            seen.v = difference(ray.direction, y_, 0) * inverse;
         } else {
-            seen.u = from.x / from.h;
-            seen.v = from.y / from.h;
+            const double inverse = 1 / from.h;
+            seen.u = from.x * inverse;
+            seen.v = from.y * inverse;
         }
-        seen.leaves = radial_ ? at_apex : (ray.direction[z_] < 0) == (sign_ < 0);
         seen.start = from.depth;
         // A float direction passes the apex by a rounding, and a tiny negative t is rounded to 0.
         seen.brink = 8 * 0x1p-24 * std::abs(from.depth) + 0x1p-148 * speed;
         // Denormal t and depths have fewer bits.
         seen.scale = std::abs(from.depth) + 0x1p-124 * speed + 0x1p-120;
-        if (seen.leaves != is_reversed()) {
-            seen.near = from.depth + t_min * speed;
-            seen.far = from.depth + t_max * speed;
-        } else {
-            seen.near = from.depth - t_max * speed;
-            seen.far = from.depth - t_min * speed;
-        }
+        const bool forward = leaves != is_reversed();
+        seen.near = from.depth + (forward ? t_min : -t_max) * speed;
+        seen.far = from.depth + (forward ? t_max : -t_min) * speed;
         return seen;
     }
 
     /// The depth of a ray's point at t.
     [[nodiscard]] double depth_at(const Ray& ray, float t) const {
-        return point(ray.origin).depth +
-               static_cast<double>(ray.direction[z_]) * static_cast<double>(t) * depth_sign_;
+        return (difference(ray.origin, z_, origin_[2]) +
+                difference(ray.direction, z_, 0) * static_cast<double>(t)) *
+               depth_sign_;
     }
 
     /// The face of the cube that sees a ray of a radial pencil.
-    [[nodiscard]] static int index_of(Vec3 apex, const Ray& ray) {
-        const Vec3d d =
-            ray.origin == apex ? to_double(ray.direction) : to_double(ray.origin) - to_double(apex);
+    [[nodiscard]] static std::size_t index_of(Vec3 apex, const Ray& ray, bool leaves) {
+        const Vec3d d = leaves ? to_double(ray.direction) : to_double(ray.origin) - to_double(apex);
         const int axis = dominant_axis(d);
-        return 2 * axis + (d[axis] < 0 ? 1 : 0);
+        return 2 * static_cast<std::size_t>(axis) + (d[axis] < 0 ? 1 : 0);
     }
 
 private:
-    Face(Vec3d origin, int z, int sign, bool radial, bool reversed)
-        : origin_(origin)
-        , z_(z)
-        , x_((z + 1) % 3)
-        , y_((z + 2) % 3)
+    Face(Vec3 origin, int z, int sign, bool reversed)
+        : x_(offset((z + 1) % 3))
+        , y_(offset((z + 2) % 3))
+        , z_(offset(z))
+        , origin_{static_cast<double>(origin[(z + 1) % 3]), static_cast<double>(origin[(z + 2) % 3]), static_cast<double>(origin[z])}
         , sign_(sign)
-        , depth_sign_(reversed ? -sign : sign)
-        , radial_(radial) {}
+        , depth_sign_(reversed ? -sign : sign) {}
 
-    Vec3d origin_;
-    int z_, x_, y_;
+    static std::size_t offset(int axis) { return static_cast<std::size_t>(axis) * sizeof(float); }
+
+    static double difference(const Vec3& p, std::size_t offset, double from) {
+        float x = 0;
+        std::memcpy(&x, reinterpret_cast<const std::byte*>(&p) + offset, sizeof x);
+        return static_cast<double>(x) - from;
+    }
+
+    std::size_t x_, y_, z_;        ///< byte offsets of the axes
+    std::array<double, 3> origin_; ///< along them
     double sign_;
     double depth_sign_;
     double slope_x_ = 0;
     double slope_y_ = 0;
-    bool radial_;
 };
 
 } // namespace raywise::detail

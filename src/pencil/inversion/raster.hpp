@@ -20,7 +20,8 @@ struct Raster {
     const Pencil& pencil;
     std::span<const Ray> rays;
     RayTiles& tiles;
-    bool* hits; ///< by ray; null: the closest hits are wanted
+    bool* hits;     ///< by ray; null: the closest hits are wanted
+    bool is_shared; ///< whether several threads draw
 };
 
 /// Draws the triangles [first, last). Any hits: sets `hits`. Closest hits: updates `tiles.best`.

@@ -22,10 +22,6 @@ struct SeenRay {
     std::uint32_t excluded, index;
 };
 
-bool is_asked(const FaceRay& ray, RaysAsked asked) {
-    return asked == RaysAsked::all || ray.leaves == (asked == RaysAsked::leaving);
-}
-
 /// The faces of a pencil, coordinates of a parallel one about the first ray.
 std::vector<Face> make_faces(const Pencil& pencil, std::span<const Ray> rays, bool reversed) {
     std::vector<Face> faces;
@@ -44,20 +40,36 @@ std::vector<Face> make_faces(const Pencil& pencil, std::span<const Ray> rays, bo
     return faces;
 }
 
-struct Placed {
-    std::size_t face;
-    FaceRay ray;
-};
+/// Which way a ray runs: away from the emitter or toward it; nowhere: it can hit nothing. Throws
+/// Error when the pencil does not hold it.
+class RunningOf {
+public:
+    explicit RunningOf(const Pencil& pencil)
+        : value_(pencil.kind() == Pencil::Kind::parallel ? pencil.direction() : pencil.apex()) {}
 
-/// Where a ray is seen; nothing for a ray that can hit nothing.
-bool place(const Pencil& pencil, const std::vector<Face>& faces, const Ray& ray, Placed& placed) {
-    if (!is_valid(ray) || std::isinf(ray.t_min)) return false;
-    placed.face = 0;
-    if (pencil.kind() == Pencil::Kind::radial)
-        placed.face = static_cast<std::size_t>(Face::index_of(pencil.apex(), ray));
-    placed.ray = faces[placed.face].ray(ray);
-    return true;
-}
+    template <bool is_radial>
+    [[nodiscard]] Running operator()(const Ray& ray) const {
+        if (!is_finite(ray.origin) || !(ray.t_min >= 0 && ray.t_min <= ray.t_max) ||
+            std::isinf(ray.t_min))
+            return Running::nowhere;
+        if constexpr (is_radial) {
+            const bool at_apex = ray.origin == value_;
+            if (at_apex && is_finite(ray.direction) && ray.direction != Vec3{})
+                return Running::leaving;
+            if (!at_apex && ray.direction == value_ - ray.origin && ray.t_max <= 1 &&
+                is_finite(ray.direction))
+                return Running::arriving;
+        } else {
+            if (ray.direction == -value_) return Running::arriving;
+            if (ray.direction == value_) return Running::leaving;
+        }
+        if (is_valid(ray)) throw Error("inversion: a ray is not one of the pencil's");
+        return Running::nowhere;
+    }
+
+private:
+    Vec3 value_; ///< direction or apex
+};
 
 /// The middle of sorted values, with room around.
 void set_range(std::vector<double>& values, double& lower, double& extent) {
@@ -71,21 +83,25 @@ void set_range(std::vector<double>& values, double& lower, double& extent) {
 
 /// Windows and tiles from a sample of the rays: the few rays far outside of the others go to the
 /// outermost tiles.
+template <bool is_radial>
 std::vector<Window>
 make_windows(const Pencil& pencil, const std::vector<Face>& faces, std::span<const Ray> rays) {
     struct Sample {
         std::vector<double> u, v;
     };
 
+    const RunningOf running_of(pencil);
     std::vector<Sample> samples(faces.size());
     const std::size_t step = rays.size() / sample_size + 1;
     std::size_t total = 0;
     for (std::size_t i = 0; i < rays.size(); i += step) {
-        Placed placed{};
-        if (!place(pencil, faces, rays[i], placed)) continue;
-        if (!std::isfinite(placed.ray.u) || !std::isfinite(placed.ray.v)) continue;
-        samples[placed.face].u.push_back(placed.ray.u);
-        samples[placed.face].v.push_back(placed.ray.v);
+        const Running running = running_of.template operator()<is_radial>(rays[i]);
+        if (running == Running::nowhere) continue;
+        const bool leaves = running == Running::leaving;
+        const std::size_t f = is_radial ? Face::index_of(pencil.apex(), rays[i], leaves) : 0;
+        const FaceRay ray = faces[f].ray<is_radial>(rays[i], leaves);
+        samples[f].u.push_back(ray.u);
+        samples[f].v.push_back(ray.v);
         ++total;
     }
     std::vector<Window> windows(faces.size());
@@ -208,7 +224,10 @@ RayTiles::RayTiles(
     const Executor& executor
 )
     : faces(make_faces(pencil, rays, asked == RaysAsked::arriving))
-    , windows(make_windows(pencil, faces, rays))
+    , windows(
+          pencil.kind() == Pencil::Kind::radial ? make_windows<true>(pencil, faces, rays)
+                                                : make_windows<false>(pencil, faces, rays)
+      )
     , tiles(windows.back().first_tile + windows.back().columns * windows.back().rows)
     , u(most_slots(rays.size()))
     , v(most_slots(rays.size()))
@@ -219,55 +238,94 @@ RayTiles::RayTiles(
     , least(asked == RaysAsked::all ? 0 : most_slots(rays.size()))
     , best(asked == RaysAsked::all ? 0 : most_slots(rays.size()))
     , bin_starts(most_bin_starts(rays.size())) {
-    const LargeBuffer<std::uint32_t> tile_of(rays.size());
+    if (pencil.kind() == Pencil::Kind::radial) {
+        sort<true>(pencil, rays, asked, executor);
+    } else {
+        sort<false>(pencil, rays, asked, executor);
+    }
+}
+
+template <bool is_radial>
+void RayTiles::sort(
+    const Pencil& pencil,
+    std::span<const Ray> rays,
+    RaysAsked asked,
+    const Executor& executor
+) {
+    const RunningOf running_of(pencil);
+    const LargeBuffer<Placed> places(rays.size());
     // At most 32 chunks, so that their counts stay few.
     const std::size_t chunk = std::max<std::size_t>(16384, rays.size() / 32 + 1);
-    const std::size_t chunks = (rays.size() + chunk - 1) / chunk;
-
-    struct Share {
-        std::vector<std::uint32_t> starts;
-        std::vector<Window> windows;
-        std::size_t seen = 0;
-        std::size_t skipped = 0;
-    };
-
-    std::vector<Share> shares(chunks);
+    std::vector<Share> shares((rays.size() + chunk - 1) / chunk);
     executor.for_each_chunk(rays.size(), chunk, [&](std::size_t begin, std::size_t end) {
         Share& share = shares[begin / chunk];
         share.starts.assign(tiles.size(), 0);
         share.windows.resize(windows.size());
         for (std::size_t i = begin; i < end; ++i) {
-            Placed placed{};
-            tile_of[i] = no_tile;
-            if (!place(pencil, faces, rays[i], placed)) continue;
-            if (!pencil.holds(rays[i])) throw Error("inversion: a ray is not one of the pencil's");
-            if (!is_asked(placed.ray, asked)) {
+            const Running running = running_of.template operator()<is_radial>(rays[i]);
+            const bool leaves = running == Running::leaving;
+            places[i] = {no_tile, leaves, 0};
+            if (running == Running::nowhere) continue;
+            if (asked != RaysAsked::all && leaves != (asked == RaysAsked::leaving)) {
                 ++share.skipped;
                 continue;
             }
             ++share.seen;
-            const Window& window = windows[placed.face];
-            tile_of[i] = window.first_tile + window.row(placed.ray.v) * window.columns +
-                         window.column(placed.ray.u);
-            ++share.starts[tile_of[i]];
-            share.windows[placed.face].include(placed.ray);
+            const std::size_t f = is_radial ? Face::index_of(pencil.apex(), rays[i], leaves) : 0;
+            const FaceRay ray = faces[f].ray<is_radial>(rays[i], leaves);
+            const Window& window = windows[f];
+            const std::uint32_t tile =
+                window.first_tile + window.row(ray.v) * window.columns + window.column(ray.u);
+            places[i].tile = tile;
+            places[i].face = static_cast<std::uint8_t>(f);
+            ++share.starts[tile];
+            share.windows[f].include(ray);
         }
     });
+    const std::vector<std::uint32_t> firsts = lay_out(shares);
 
+    const LargeBuffer<SeenRay> sorted(firsts.back());
+    executor.for_each_chunk(rays.size(), chunk, [&](std::size_t begin, std::size_t end) {
+        std::vector<std::uint32_t>& starts = shares[begin / chunk].starts;
+        for (std::size_t i = begin; i < end; ++i) {
+            const Placed& place = places[i];
+            if (place.tile == no_tile) continue;
+            const FaceRay ray = faces[place.face].ray<is_radial>(rays[i], place.leaves);
+            const Tile& tile = tiles[place.tile];
+            // Outward, by more than roundings of the depths and of t come to.
+            const auto margin = [&](double end_depth) {
+                return 4 * 0x1p-24 * (std::abs(end_depth) + ray.scale);
+            };
+            sorted[starts[place.tile]++] = {
+                static_cast<float>(ray.u - tile.u),
+                static_cast<float>(ray.v - tile.v),
+                static_cast<float>(ray.near - margin(ray.near)),
+                static_cast<float>(ray.far + margin(ray.far)),
+                static_cast<float>(ray.scale * (1 + 0x1p-22)),
+                static_cast<float>(std::abs(ray.start) * (1 + 0x1p-22)),
+                static_cast<std::uint32_t>(rays[i].excluded),
+                static_cast<std::uint32_t>(i)
+            };
+        }
+    });
+    executor.for_each_chunk(tiles.size(), 16, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t t = begin; t < end; ++t)
+            sort_tile(
+                *this,
+                tiles[t],
+                {sorted.get() + firsts[t], firsts[t + 1] - firsts[t]},
+                asked != RaysAsked::all
+            );
+    });
+}
+
+std::vector<std::uint32_t> RayTiles::lay_out(std::vector<Share>& shares) {
     for (const Share& share : shares) {
         seen += share.seen;
         skipped += share.skipped;
-        for (std::size_t f = 0; f < windows.size(); ++f) {
-            const Window& part = share.windows[f];
-            windows[f].u_lo = std::min(windows[f].u_lo, part.u_lo);
-            windows[f].u_hi = std::max(windows[f].u_hi, part.u_hi);
-            windows[f].v_lo = std::min(windows[f].v_lo, part.v_lo);
-            windows[f].v_hi = std::max(windows[f].v_hi, part.v_hi);
-            windows[f].brink = std::max(windows[f].brink, part.brink);
-            windows[f].reach = std::max(windows[f].reach, part.reach);
-        }
+        for (std::size_t f = 0; f < windows.size(); ++f)
+            windows[f].include(share.windows[f]);
     }
-    // Starts of each tile and, inside, of each chunk's share; then slots and bins of the tiles.
     std::vector<std::uint32_t> firsts(tiles.size() + 1);
     std::uint32_t sum = 0;
     std::uint32_t slots = 0;
@@ -293,45 +351,11 @@ RayTiles::RayTiles(
                 tile.u = window.u + (window.per_u > 0 ? (column + 0.5) / window.per_u : 0);
                 tile.v = window.v + (window.per_v > 0 ? (row + 0.5) / window.per_v : 0);
             }
-
-    const LargeBuffer<SeenRay> sorted(sum);
-    executor.for_each_chunk(rays.size(), chunk, [&](std::size_t begin, std::size_t end) {
-        std::vector<std::uint32_t>& starts = shares[begin / chunk].starts;
-        for (std::size_t i = begin; i < end; ++i) {
-            if (tile_of[i] == no_tile) continue;
-            Placed placed{};
-            static_cast<void>(place(pencil, faces, rays[i], placed));
-            const Tile& tile = tiles[tile_of[i]];
-            const FaceRay& ray = placed.ray;
-            // Outward, by more than roundings of the depths and of t come to.
-            const auto margin = [&](double end_depth) {
-                return 4 * 0x1p-24 * (std::abs(end_depth) + ray.scale);
-            };
-            sorted[starts[tile_of[i]]++] = {
-                static_cast<float>(ray.u - tile.u),
-                static_cast<float>(ray.v - tile.v),
-                static_cast<float>(ray.near - margin(ray.near)),
-                static_cast<float>(ray.far + margin(ray.far)),
-                static_cast<float>(ray.scale * (1 + 0x1p-22)),
-                static_cast<float>(std::abs(ray.start) * (1 + 0x1p-22)),
-                static_cast<std::uint32_t>(rays[i].excluded),
-                static_cast<std::uint32_t>(i)
-            };
-        }
-    });
-    executor.for_each_chunk(tiles.size(), 16, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t t = begin; t < end; ++t)
-            sort_tile(
-                *this,
-                tiles[t],
-                {sorted.get() + firsts[t], firsts[t + 1] - firsts[t]},
-                asked != RaysAsked::all
-            );
-    });
+    return firsts;
 }
 
 std::size_t RayTiles::most_bytes(std::size_t rays) {
-    return rays * (sizeof(std::uint32_t) + sizeof(SeenRay)) +
+    return rays * (sizeof(RayTiles::Placed) + sizeof(SeenRay)) +
            most_slots(rays) * (6 + 2) * sizeof(float) +
            most_bin_starts(rays) * sizeof(std::uint32_t) +
            most_tiles(rays) * (sizeof(Tile) + 33 * 4);

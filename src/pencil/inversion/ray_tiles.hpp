@@ -52,6 +52,15 @@ struct Window {
 
     [[nodiscard]] std::uint32_t row(double at) const { return place((at - v) * per_v, rows); }
 
+    void include(const Window& part) {
+        u_lo = std::min(u_lo, part.u_lo);
+        u_hi = std::max(u_hi, part.u_hi);
+        v_lo = std::min(v_lo, part.v_lo);
+        v_hi = std::max(v_hi, part.v_hi);
+        brink = std::max(brink, part.brink);
+        reach = std::max(reach, part.reach);
+    }
+
     void include(const FaceRay& ray) {
         u_lo = std::min(u_lo, ray.u);
         u_hi = std::max(u_hi, ray.u);
@@ -90,6 +99,8 @@ struct alignas(64) Tile {
     [[nodiscard]] std::uint32_t row(float at) const { return place((at - v0) * per_v, rows); }
 };
 
+enum class Running : std::uint8_t { nowhere, leaving, arriving };
+
 /// Which rays of the batch are asked about.
 enum class RaysAsked : std::uint8_t { all, leaving, arriving };
 
@@ -121,6 +132,34 @@ public:
     LargeBuffer<std::uint32_t> best;
 
     LargeBuffer<std::uint32_t> bin_starts; ///< relative to the first slot of the tile
+
+private:
+    /// Where a ray of the batch is seen, while it is sorted.
+    struct Placed {
+        std::uint32_t tile;
+        bool leaves;
+        std::uint8_t face;
+    };
+
+    /// What one part of the batch adds.
+    struct Share {
+        std::vector<std::uint32_t> starts; ///< by tile: first a count, then a place
+        std::vector<Window> windows;
+        std::size_t seen = 0;
+        std::size_t skipped = 0;
+    };
+
+    template <bool is_radial>
+    void sort(
+        const Pencil& pencil,
+        std::span<const Ray> rays,
+        RaysAsked asked,
+        const Executor& executor
+    );
+
+    /// Gives every tile its slots and bins, and every share its place in them. Returns where the
+    /// rays of each tile begin when they are sorted by tile.
+    std::vector<std::uint32_t> lay_out(std::vector<Share>& shares);
 };
 
 } // namespace raywise::detail

@@ -1,0 +1,88 @@
+// A triangle as one picture shows it.
+#pragma once
+
+#include "pencil/inversion/face.hpp"
+
+#include <raywise/core/ids.hpp>
+#include <raywise/geometry/vec.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace raywise::detail {
+
+struct Drawn {
+    PrimId id;
+    std::array<FacePoint, 3> p;
+    double depth_lo, depth_hi;
+    double size;     ///< no coordinate's magnitude is greater
+    double distance; ///< radial: at most the largest coordinate of any point of the triangle
+    bool is_flat;    ///< whether it is seen as the triangle of the points (u, v), on a known side
+    std::array<double, 3> u, v;    ///< of a flat one
+    double area;                   ///< twice the signed area of a flat one, approximately
+    double area_error;             ///< relative
+    int side;                      ///< sign of that area, surely
+    double u_lo, u_hi, v_lo, v_hi; ///< where it may be seen; unbounded when it reaches behind
+};
+
+/// A lower bound on the distance of the plane from the apex, in the largest of the coordinates.
+inline double plane_distance(const Drawn& t) {
+    const auto vec = [](const FacePoint& p) { return Vec3d{p.x, p.y, p.h}; };
+    const Vec3d a = vec(t.p[0]);
+    const Vec3d normal = cross(vec(t.p[1]) - a, vec(t.p[2]) - a);
+    const Vec3d n = abs(normal);
+    const double volume = std::abs(dot(a, normal)) - 0x1p-46 * t.size * t.size * t.size;
+    return volume > 0 ? volume / (n.x + n.y + n.z + 0x1p-46 * t.size * t.size) : 0;
+}
+
+/// Sets what follows from the points.
+template <bool is_radial>
+void measure(Drawn& t) {
+    const auto& [a, b, c] = t.p;
+    t.depth_lo = std::min(std::min(a.depth, b.depth), c.depth);
+    t.depth_hi = std::max(std::max(a.depth, b.depth), c.depth);
+    t.u_lo = std::min(std::min(a.x, b.x), c.x);
+    t.u_hi = std::max(std::max(a.x, b.x), c.x);
+    t.v_lo = std::min(std::min(a.y, b.y), c.y);
+    t.v_hi = std::max(std::max(a.y, b.y), c.y);
+    t.size = std::max(
+        std::max(std::max(-t.u_lo, t.u_hi), std::max(-t.v_lo, t.v_hi)),
+        std::max(-t.depth_lo, t.depth_hi)
+    );
+    if constexpr (is_radial) {
+        t.distance = std::max(
+            std::max(std::max(t.u_lo, -t.u_hi), std::max(t.v_lo, -t.v_hi)),
+            std::max(std::max(t.depth_lo, -t.depth_hi), 0.0)
+        );
+        if (t.distance < 0x1p-6 * t.size) t.distance = std::max(t.distance, plane_distance(t));
+    }
+}
+
+/// By how much, in the picture, a ray of this reach may be off where it meets the triangle.
+///
+/// The float direction of a shadow ray is off by 2^-24 in each component, so at depth z, started at
+/// depth s, the ray is seen at most 2 |u| 2^-24 |s / z - 1| aside, |u| <= 1. A point where it meets
+/// a triangle at distance r > 8 * 2^-24 s is seen in the doubled window, hence z >= r / 2.
+inline double deviation(const Drawn& t, double reach) {
+    const double nearest =
+        std::max(t.distance / 2, std::min(std::min(t.p[0].h, t.p[1].h), t.p[2].h));
+    return 2.1 * 0x1p-24 * std::max(1.0, reach / nearest);
+}
+
+/// Sets area and side from u and v, which are within `error` of the exact ones. False: the side is
+/// not sure.
+inline bool find_side(Drawn& t, double error) {
+    const double ax = t.u[1] - t.u[0], ay = t.v[1] - t.v[0];
+    const double bx = t.u[2] - t.u[0], by = t.v[2] - t.v[0];
+    const double across =
+        std::max(std::max(std::abs(ax), std::abs(bx)), std::max(std::abs(ay), std::abs(by)));
+    t.area = ax * by - ay * bx;
+    t.side = t.area > 0 ? 1 : -1;
+    const double bound = 8 * error * (across + error) + 0x1p-50 * across * across;
+    t.area_error = bound / std::abs(t.area);
+    return std::abs(t.area) > 4 * bound;
+}
+
+} // namespace raywise::detail
