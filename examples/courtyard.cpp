@@ -35,7 +35,7 @@ int main() {
         InfluenceArea::parallel("sun", {.direction = {0.3, -0.8, 0.5}, .region = around});
     const auto lamp = InfluenceArea::radial("lamp", {.apex = {0, 3, 0}, .region = around});
 
-    // Local trees for the areas, a global one for everything else.
+    // A structure of its own for each area that pays for one, a global tree for everything else.
     const Executor threads;
     const Accelerator accel = build_accelerator(scene, {sun, lamp}, {}, threads);
 
@@ -65,7 +65,7 @@ int main() {
     std::printf(
         "%zu KiB, of which the areas take %zu\n",
         memory.total() / 1024,
-        (memory.total() - memory.global_tree - memory.global_triangles) / 1024
+        (memory.total() - memory.global_tree) / 1024
     );
     return 0;
 }

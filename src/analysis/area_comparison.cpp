@@ -62,12 +62,12 @@ struct TreeRun {
 };
 
 TreeRun run_tree(
-    const Bvh& tree,
-    const PackedTriangles& triangles,
+    const BinaryTree& traced,
     const RaySets& sets,
     const CostConstants& constants,
     const Executor& executor
 ) {
+    const auto& [tree, triangles] = traced;
     TreeRun run;
     for (const std::vector<Ray>& rays : sets) {
         const std::vector<Counts> unpruned = count_unpruned(tree, rays, executor);
@@ -238,8 +238,8 @@ ShadowRun run_shadows(
         Counts global;
         for (const Ray& ray : shadows[s]) {
             const bool here = accelerator.any_hit(ray, full);
-            const bool there =
-                any_hit(accelerator.global_tree(), accelerator.global_triangles(), ray, global);
+            const auto& [tree, triangles] = *accelerator.global_tree().binary();
+            const bool there = any_hit(tree, triangles, ray, global);
             run.wrong[s] += here == there ? 0U : 1U;
         }
         run.full[s] = cost_of(full, constants);
@@ -304,12 +304,8 @@ public:
     AreaResult run() {
         const CostConstants& constants = input_.params.constants;
         const Accelerator& base = baseline_;
-        global_ = run_tree(
-            base.global_tree(), base.global_triangles(), sets_, constants, input_.executor
-        );
-        local_ = run_tree(
-            local_of(base).tree, local_of(base).triangles, sets_, constants, input_.executor
-        );
+        global_ = run_tree(*base.global_tree().binary(), sets_, constants, input_.executor);
+        local_ = run_tree(local_of(base), sets_, constants, input_.executor);
         shadows_ = shadow_rays(sets_, global_);
         AreaResult result;
         summarize_area(result.summary);
@@ -336,8 +332,8 @@ public:
 private:
     static constexpr AreaId only{0};
 
-    static const LocalStructure& local_of(const Accelerator& accelerator) {
-        return accelerator.local(only);
+    static const BinaryTree& local_of(const Accelerator& accelerator) {
+        return *accelerator.local(only).tree.binary();
     }
 
     [[nodiscard]] MembershipParams membership() const {
@@ -347,7 +343,7 @@ private:
     }
 
     [[nodiscard]] Accelerator build_baseline() const {
-        AcceleratorParams params;
+        AcceleratorParams params = two_binary_levels();
         params.local = local_heuristic(baseline_of(input_.params), input_.params);
         params.global = global_heuristic(input_.params);
         params.membership = membership();
@@ -376,7 +372,7 @@ private:
     compare_variant(Variant variant, const Accelerator& accelerator, AreaSummary& summary) {
         const CostConstants& constants = input_.params.constants;
         const bool is_baseline = variant == baseline_of(input_.params);
-        const LocalStructure& local = local_of(accelerator);
+        const BinaryTree& local = local_of(accelerator);
         ComparisonRow row;
         row.area = input_.index;
         row.variant = variant;
@@ -384,8 +380,7 @@ private:
         describe_tree(row, accelerator, variant);
 
         const TreeRun own =
-            is_baseline ? TreeRun{}
-                        : run_tree(local.tree, local.triangles, sets_, constants, input_.executor);
+            is_baseline ? TreeRun{} : run_tree(local, sets_, constants, input_.executor);
         const TreeRun& run = is_baseline ? local_ : own;
         describe_costs(row, run);
         if (!input_.params.faithful) row.mismatches += count_differences(run);
@@ -423,7 +418,7 @@ private:
         row.depth = shape.max_depth;
         row.memory = measure_memory(tree);
         const AcceleratorMemory whole = accelerator.measure_memory();
-        row.memory.triangles = whole.local_triangles;
+        row.memory.triangles = local_of(accelerator).triangles.size_in_bytes();
         row.memory.areas = whole.areas;
         row.memory.index = whole.index;
         row.estimated_cost = estimate(tree, area_.distribution, mode_, constants);
@@ -538,8 +533,8 @@ private:
     }
 
     void time_variant(ComparisonRow& row, const Accelerator& accelerator, AreaSummary& summary) {
-        const LocalStructure& base = local_of(baseline_);
-        const LocalStructure& own = local_of(accelerator);
+        const BinaryTree& base = local_of(baseline_);
+        const BinaryTree& own = local_of(accelerator);
         const auto trace_base = [&](std::span<const Ray> rays) {
             return trace_all(rays, [&](const Ray& ray) {
                 return closest_hit(base.tree, base.triangles, ray);
@@ -550,9 +545,10 @@ private:
                 return closest_hit(own.tree, own.triangles, ray);
             });
         };
+        const BinaryTree& global = *baseline_.global_tree().binary();
         const auto trace_global = [&](std::span<const Ray> rays) {
             return trace_all(rays, [&](const Ray& ray) {
-                return closest_hit(baseline_.global_tree(), baseline_.global_triangles(), ray);
+                return closest_hit(global.tree, global.triangles, ray);
             });
         };
         const auto trace_full = [&](std::span<const Ray> rays) {

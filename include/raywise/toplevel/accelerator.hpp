@@ -1,9 +1,9 @@
-// The two-level structure: a local tree per influence area, a global tree over everything, and
-// queries that are exact whatever the areas. After [Falcone24]; ours: the proof, the continuation
-// on the remaining interval, any hit.
+// The two-level structure: a structure of its own for each influence area that pays for one, a
+// global tree over everything, and queries that are exact whatever the areas. After [Falcone24];
+// ours: the proof, the continuation on the remaining interval, any hit, the pencil grids, the
+// choice.
 #pragma once
 
-#include <raywise/bvh/bvh.hpp>
 #include <raywise/core/executor.hpp>
 #include <raywise/core/ids.hpp>
 #include <raywise/core/progress.hpp>
@@ -11,18 +11,25 @@
 #include <raywise/geometry/ray.hpp>
 #include <raywise/geometry/triangle_view.hpp>
 #include <raywise/geometry/vec.hpp>
+#include <raywise/pencil/pencil.hpp>
+#include <raywise/pencil/pencil_grid.hpp>
 #include <raywise/scene/scene.hpp>
 #include <raywise/toplevel/area_id.hpp>
 #include <raywise/toplevel/build_tree.hpp>
 #include <raywise/toplevel/membership.hpp>
 #include <raywise/toplevel/region_index.hpp>
 #include <raywise/toplevel/served.hpp>
-#include <raywise/trace/triangles.hpp>
+#include <raywise/toplevel/structure_choice.hpp>
+#include <raywise/toplevel/traced_tree.hpp>
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -45,45 +52,65 @@ struct GainParams {
 };
 
 struct AcceleratorParams {
-    Heuristic local{};                           ///< of the areas' trees
-    Heuristic global = surface_area_heuristic(); ///< of the tree over everything
-    MembershipParams membership{};               ///< `vertices` only with QueryMode::first_hit_wins
-    RegionIndexParams index{}; ///< OctreeMode::over only with QueryMode::first_hit_wins
-    int max_candidates = 1;    ///< areas that a ray tries before the global tree, in [1, 8]
+    /// Of every area that `uses` does not name. The structure is chosen by prediction, unless
+    /// forced.
+    AreaUse use{};
+    std::map<std::string, AreaUse, std::less<>> uses{};        ///< by name of area
+    StructureKind global_structure = StructureKind::wide_tree; ///< or binary_tree, to look at nodes
+    Heuristic local{};                                         ///< of the areas' trees
+    Heuristic global = surface_area_heuristic();               ///< of the tree over everything
+    MembershipParams membership{}; ///< `vertices` only with QueryMode::first_hit_wins
+    RegionIndexParams index{};     ///< OctreeMode::over only with QueryMode::first_hit_wins
+    int max_candidates = 1;        ///< areas that a ray tries before the global tree, in [1, 8]
     QueryMode mode = QueryMode::exact;
     std::optional<GainParams> gain{}; ///< absent: every area is used
 };
 
-/// Bytes of the containers, by what they hold.
+/// The accelerator of the thesis: binary trees everywhere, one for each area. What analysis wants:
+/// its nodes can be watched.
+[[nodiscard]] inline AcceleratorParams two_binary_levels() {
+    AcceleratorParams params;
+    params.use.structure = StructureKind::binary_tree;
+    params.global_structure = StructureKind::binary_tree;
+    return params;
+}
+
+/// Bytes of the containers, by what they hold; trees and grids with their triangles.
 struct AcceleratorMemory {
     std::size_t global_tree = 0;
-    std::size_t global_triangles = 0;
     std::size_t local_trees = 0;
-    std::size_t local_triangles = 0;
+    std::size_t grids = 0;
     std::size_t areas = 0; ///< the areas themselves; a measured area's rays are shared, not counted
     std::size_t index = 0;
 
     [[nodiscard]] std::size_t total() const {
-        return global_tree + global_triangles + local_trees + local_triangles + areas + index;
+        return global_tree + local_trees + grids + areas + index;
     }
 };
 
 /// What one influence area owns.
 struct LocalStructure {
-    Bvh tree;                   ///< its primitives are ids of the whole scene
-    PackedTriangles triangles;  ///< a copy, in the order of the tree's slots
-    double expected_cost = 0;   ///< of a ray that hits the root, by the area's measure, unpruned
-    bool is_enabled = true;     ///< false: rays of this area go to the global tree directly
-    std::optional<double> gain; ///< cost saved per sampled ray, when GainParams asked for it
+    StructureChoice choice; ///< what was built, and why
+    TracedTree tree;        ///< of the tree kinds; its primitives are ids of the scene
+    std::shared_ptr<const PencilGrid> grid; ///< of the kind pencil_grid, else null
+    std::optional<Pencil> pencil;           ///< of exact areas, whatever was built
+    double expected_cost = 0;        ///< of a ray that hits a tree's root, by the area's measure
+    bool has_tree = false;           ///< whether queries that start in the region ask the tree
+    std::optional<double> gain = {}; ///< cost saved per sampled ray, when GainParams asked for it
 };
 
 class AreaHandle;
 
+namespace detail {
+class AcceleratorBuilder;
+}
+
 /// Answers ray queries over all triangles; rays that belong to an influence area are answered by
-/// its local tree as far as that proves the answer. (t, id) are those of one tree over everything,
-/// for every ray. Owns copies of the triangles (36 bytes per triangle and tree), so the caller's
-/// mesh may go. Const queries are thread-safe and allocate nothing; a ray that is not `is_valid`
-/// misses.
+/// its own structure as far as that proves the answer. (t, id) are those of one tree over
+/// everything, for every ray. A ray that nobody assigned to an area is compared with the pencils of
+/// the areas that have a grid, then, where areas have trees, searched by its origin. Owns copies of
+/// the triangles, so the caller's mesh may go. Const queries are thread-safe, and single ones
+/// allocate nothing; a ray that is not `is_valid` misses.
 class Accelerator {
 public:
     /// The hit with the smallest (t, id) in [t_min, t_max].
@@ -118,8 +145,8 @@ public:
         const Executor& executor = serial_executor()
     ) const;
 
-    /// This accelerator with local trees by another heuristic; the global tree and the index are
-    /// copied, not built again. `triangles` must be those that this one was built from.
+    /// This accelerator with other local trees; the global tree and the index are copied, not built
+    /// again. `triangles` must be those that this one was built from.
     [[nodiscard]] Accelerator with_local_heuristic(
         const Heuristic& local,
         const TriangleView& triangles,
@@ -138,9 +165,7 @@ public:
         return locals_[static_cast<std::size_t>(id)];
     }
 
-    [[nodiscard]] const Bvh& global_tree() const { return global_tree_; }
-
-    [[nodiscard]] const PackedTriangles& global_triangles() const { return global_triangles_; }
+    [[nodiscard]] const TracedTree& global_tree() const { return global_tree_; }
 
     [[nodiscard]] const AnyRegionIndex& index() const { return index_; }
 
@@ -151,8 +176,7 @@ public:
 
 private:
     friend class AreaHandle;
-    friend Accelerator
-    build_accelerator(const TriangleView&, std::vector<InfluenceArea>, const AcceleratorParams&, const Executor&, const Progress&);
+    friend class detail::AcceleratorBuilder;
 
     /// An area that a ray may be answered by, and the end of the interval that it proves.
     struct Candidate {
@@ -168,10 +192,6 @@ private:
         std::size_t count = 0;
     };
 
-    /// The local trees of all areas, and whether they pay.
-    void
-    build_locals(const TriangleView& triangles, const Executor& executor, const Progress& progress);
-
     /// The areas to ask for a valid ray, best first.
     [[nodiscard]] Candidates candidates_of(const Ray& ray) const;
 
@@ -183,6 +203,13 @@ private:
 
     [[nodiscard]] bool is_cheaper(const Candidate& a, const Candidate& b) const;
     [[nodiscard]] bool is_better(const Candidate& a, const Candidate& b, float t_max) const;
+
+    /// Asks the area's grid: unknown when there is none, or the ray is not of its pencil. `ray`
+    /// must be valid.
+    template <class Observer>
+    Verdict closest_in_grid(AreaId area, const Ray& ray, Hit& hit, Observer& seen) const;
+    template <class Observer>
+    Verdict any_in_grid(AreaId area, const Ray& ray, Observer& seen) const;
 
     template <class Observer>
     std::optional<Hit>
@@ -201,13 +228,15 @@ private:
     AcceleratorParams params_;
     std::vector<InfluenceArea> areas_;
     std::vector<LocalStructure> locals_;
+    std::vector<AreaId> with_grid_; ///< in ascending order
+    bool any_tree_ = false;         ///< whether some area has one, so that a search may pay
     AnyRegionIndex index_;
-    Bvh global_tree_;
-    PackedTriangles global_triangles_;
+    TracedTree global_tree_;
 };
 
 /// One area of an accelerator: its queries skip the search for the area and the test of affinity.
-/// The answers are exact for any ray, also one that has nothing to do with the area.
+/// The answers are exact for any ray, also one that has nothing to do with the area. Rays that the
+/// area's pencil holds (see pencil()) are the fast ones.
 class AreaHandle {
 public:
     AreaHandle(const Accelerator& owner, AreaId id) : owner_(&owner), id_(id) {}
@@ -216,6 +245,15 @@ public:
 
     [[nodiscard]] const InfluenceArea& area() const;
 
+    /// What the exact rays of the area share. Throws Error for an area that is not exact.
+    [[nodiscard]] const Pencil& pencil() const;
+
+    /// What was built for the area, and why.
+    [[nodiscard]] const StructureChoice& choice() const;
+
+    /// The same for people: a few lines.
+    [[nodiscard]] std::string explain() const;
+
     [[nodiscard]] std::optional<Hit> closest_hit(const Ray& ray) const;
     [[nodiscard]] bool any_hit(const Ray& ray) const;
     template <QueryObserver Observer>
@@ -223,14 +261,15 @@ public:
     template <QueryObserver Observer>
     [[nodiscard]] bool any_hit(const Ray& ray, Observer& seen) const;
 
-    /// See Accelerator::closest_hits.
+    /// See Accelerator::closest_hits. Fastest when the pencil holds every ray: then large batches
+    /// are answered in the order of the grid's cells, whatever their own.
     void closest_hits(
         std::span<const Ray> rays,
         std::span<Hit> hits,
         const Executor& executor = serial_executor()
     ) const;
 
-    /// See Accelerator::any_hits.
+    /// See Accelerator::any_hits and closest_hits.
     void any_hits(
         std::span<const Ray> rays,
         std::span<bool> occluded,
@@ -240,8 +279,9 @@ public:
     /// shadowed[i] tells whether something stands between points[i] and the emitter: a ray
     /// against the direction of a parallel area, or to the eye of a radial one. It starts `offset`
     /// (scene units, >= 0) away from the point, so that the surface under the point does not count;
-    /// a radial ray shorter than that is not shadowed. Throws Error for areas of uniform or
-    /// measured rays, which have no emitter, and when the sizes differ.
+    /// a radial ray shorter than that is not shadowed. Blurred emitters count by their middle.
+    /// Throws Error for areas of uniform or measured rays, which have no emitter, and when the
+    /// sizes differ.
     void occluded(
         std::span<const Vec3> points,
         std::span<bool> shadowed,
@@ -249,13 +289,27 @@ public:
         const Executor& executor = serial_executor()
     ) const;
 
+    /// The same, where the surface under points[i] is the triangle surfaces[i], or no_prim.
+    void occluded(
+        std::span<const Vec3> points,
+        std::span<const PrimId> surfaces,
+        std::span<bool> shadowed,
+        const Executor& executor = serial_executor()
+    ) const;
+
 private:
+    [[nodiscard]] const LocalStructure& structure() const;
+
+    /// Whether there is a grid and its pencil holds every ray.
+    [[nodiscard]] bool are_exact(std::span<const Ray> rays, const Executor& executor) const;
+
     const Accelerator* owner_;
     AreaId id_;
 };
 
-/// Builds the global tree, the region index, and a local tree per area over the triangles of its
-/// region. Names must differ. Coordinates must be finite and within `max_coordinate`. Throws Error
+/// Builds the global tree, the region index, and for each area what its use asks for or what is
+/// predicted to be cheapest in total, build and rays. Names must differ, and params.uses must name
+/// areas. Coordinates must be finite and within `max_coordinate`. Throws Error
 /// otherwise, and for parameters out of range; Cancelled when the progress asks to stop. No
 /// triangles: every query misses. The same for any executor.
 [[nodiscard]] Accelerator build_accelerator(

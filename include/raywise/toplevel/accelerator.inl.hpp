@@ -6,15 +6,55 @@
 #pragma once
 
 #include <raywise/toplevel/accelerator.hpp> // IWYU pragma: keep
-#include <raywise/trace/all_hits.hpp>
-#include <raywise/trace/any_hit.hpp>
-#include <raywise/trace/closest_hit.hpp>
 
 #include <cmath>
 #include <limits>
+#include <type_traits>
 #include <utility>
 
 namespace raywise {
+
+namespace detail {
+
+/// A grid's steps in the words of trees: a cell is a node, a list a leaf.
+[[nodiscard]] constexpr Counts steps_of(const PencilGridCounts& counts) {
+    return {
+        .boxes = counts.cells, .inners = counts.cells, .leaves = counts.lists, .prims = counts.prims
+    };
+}
+
+/// Asks a grid, counting only for those who watch.
+template <class Observer, class Ask>
+Verdict ask_watched(AreaId area, const Ray& ray, Observer& seen, Ask&& ask) {
+    seen.search(area, ray.t_min, ray.t_max);
+    PencilGridCounts counts;
+    const Verdict verdict = ask(counts);
+    seen.steps(steps_of(counts));
+    if (verdict == Verdict::hit) seen.found();
+    return verdict;
+}
+
+} // namespace detail
+
+template <class Observer>
+Verdict Accelerator::closest_in_grid(AreaId area, const Ray& ray, Hit& hit, Observer& seen) const {
+    const PencilGrid* grid = local(area).grid.get();
+    if (grid == nullptr || !grid->pencil().holds(ray)) return Verdict::unknown;
+    if constexpr (std::is_same_v<Observer, SilentQuery>) return grid->closest_hit(ray, hit);
+    return detail::ask_watched(area, ray, seen, [&](PencilGridCounts& counts) {
+        return grid->closest_hit(ray, hit, counts);
+    });
+}
+
+template <class Observer>
+Verdict Accelerator::any_in_grid(AreaId area, const Ray& ray, Observer& seen) const {
+    const PencilGrid* grid = local(area).grid.get();
+    if (grid == nullptr || !grid->pencil().holds(ray)) return Verdict::unknown;
+    if constexpr (std::is_same_v<Observer, SilentQuery>) return grid->any_hit(ray);
+    return detail::ask_watched(area, ray, seen, [&](PencilGridCounts& counts) {
+        return grid->any_hit(ray, counts);
+    });
+}
 
 template <class Observer>
 std::optional<Hit>
@@ -22,8 +62,8 @@ Accelerator::closest_among(const Ray& ray, const Candidates& candidates, Observe
     // No unknown hit is left before rest.t_min, and none beyond rest.t_max can be the closest.
     Ray rest = ray;
     std::optional<Hit> best;
-    const auto search = [&](const Bvh& tree, const PackedTriangles& triangles) {
-        const auto hit = raywise::closest_hit(tree, triangles, rest, seen);
+    const auto search = [&](const TracedTree& tree) {
+        const auto hit = tree.closest_hit(rest, seen);
         if (!hit || (best && !is_closer(*hit, *best))) return;
         best = hit;
         rest.t_max = hit->t;
@@ -34,20 +74,20 @@ Accelerator::closest_among(const Ray& ray, const Candidates& candidates, Observe
         if (candidate.exit <= rest.t_min) continue;
         const LocalStructure& structure = local(candidate.area);
         seen.search(candidate.area, rest.t_min, rest.t_max);
-        search(structure.tree, structure.triangles);
+        search(structure.tree);
         if (rest.t_max <= candidate.exit) return best;
         rest.t_min = candidate.exit;
     }
     seen.search(std::nullopt, rest.t_min, rest.t_max);
-    search(global_tree_, global_triangles_);
+    search(global_tree_);
     return best;
 }
 
 template <class Observer>
 bool Accelerator::any_among(const Ray& ray, const Candidates& candidates, Observer& seen) const {
     Ray rest = ray;
-    const auto search = [&](const Bvh& tree, const PackedTriangles& triangles) {
-        const bool hit = raywise::any_hit(tree, triangles, rest, seen);
+    const auto search = [&](const TracedTree& tree) {
+        const bool hit = tree.any_hit(rest, seen);
         if (hit) seen.found();
         return hit;
     };
@@ -57,12 +97,12 @@ bool Accelerator::any_among(const Ray& ray, const Candidates& candidates, Observ
         const LocalStructure& structure = local(candidate.area);
         seen.search(candidate.area, rest.t_min, rest.t_max);
         // A hit beyond the exit is as real an occluder as one before it.
-        if (search(structure.tree, structure.triangles)) return true;
+        if (search(structure.tree)) return true;
         if (rest.t_max <= candidate.exit) return false;
         rest.t_min = candidate.exit;
     }
     seen.search(std::nullopt, rest.t_min, rest.t_max);
-    return search(global_tree_, global_triangles_);
+    return search(global_tree_);
 }
 
 template <class Observer>
@@ -71,14 +111,14 @@ Accelerator::first_hit_wins(const Ray& ray, const Candidates& candidates, Observ
     for (std::size_t i = 0; i < candidates.count; ++i) {
         const LocalStructure& structure = local(candidates.items[i].area);
         seen.search(candidates.items[i].area, ray.t_min, ray.t_max);
-        const auto hit = raywise::closest_hit(structure.tree, structure.triangles, ray, seen);
+        const auto hit = structure.tree.closest_hit(ray, seen);
         if (hit) {
             seen.found();
             return hit;
         }
     }
     seen.search(std::nullopt, ray.t_min, ray.t_max);
-    const auto hit = raywise::closest_hit(global_tree_, global_triangles_, ray, seen);
+    const auto hit = global_tree_.closest_hit(ray, seen);
     if (hit) seen.found();
     return hit;
 }
@@ -99,12 +139,23 @@ bool Accelerator::any_by_mode(const Ray& ray, const Candidates& candidates, Obse
 template <QueryObserver Observer>
 std::optional<Hit> Accelerator::closest_hit(const Ray& ray, Observer& seen) const {
     if (!is_valid(ray)) return std::nullopt;
+    for (const AreaId area : with_grid_) {
+        Hit hit;
+        const Verdict verdict = closest_in_grid(area, ray, hit, seen);
+        if (verdict != Verdict::unknown)
+            return verdict == Verdict::hit ? std::optional(hit) : std::nullopt;
+    }
     return closest_by_mode(ray, candidates_of(ray), seen);
 }
 
 template <QueryObserver Observer>
 bool Accelerator::any_hit(const Ray& ray, Observer& seen) const {
-    return is_valid(ray) && any_by_mode(ray, candidates_of(ray), seen);
+    if (!is_valid(ray)) return false;
+    for (const AreaId area : with_grid_) {
+        const Verdict verdict = any_in_grid(area, ray, seen);
+        if (verdict != Verdict::unknown) return verdict == Verdict::hit;
+    }
+    return any_by_mode(ray, candidates_of(ray), seen);
 }
 
 template <class Visitor>
@@ -116,24 +167,31 @@ void Accelerator::all_hits(const Ray& ray, Visitor&& visit) const {
         candidates.items[0].exit > ray.t_min) {
         const LocalStructure& structure = local(candidates.items[0].area);
         rest.t_max = std::min(ray.t_max, candidates.items[0].exit);
-        raywise::all_hits(structure.tree, structure.triangles, rest, visit);
+        structure.tree.all_hits(rest, visit);
         if (rest.t_max == ray.t_max) return;
         // The global part is open at the exit, or hits there would be reported twice.
         rest.t_min = std::nextafter(rest.t_max, std::numeric_limits<float>::infinity());
         rest.t_max = ray.t_max;
     }
-    raywise::all_hits(global_tree_, global_triangles_, rest, visit);
+    global_tree_.all_hits(rest, visit);
 }
 
 template <QueryObserver Observer>
 std::optional<Hit> AreaHandle::closest_hit(const Ray& ray, Observer& seen) const {
     if (!is_valid(ray)) return std::nullopt;
+    Hit hit;
+    const Verdict verdict = owner_->closest_in_grid(id_, ray, hit, seen);
+    if (verdict != Verdict::unknown)
+        return verdict == Verdict::hit ? std::optional(hit) : std::nullopt;
     return owner_->closest_by_mode(ray, owner_->candidates_in(id_, ray), seen);
 }
 
 template <QueryObserver Observer>
 bool AreaHandle::any_hit(const Ray& ray, Observer& seen) const {
-    return is_valid(ray) && owner_->any_by_mode(ray, owner_->candidates_in(id_, ray), seen);
+    if (!is_valid(ray)) return false;
+    const Verdict verdict = owner_->any_in_grid(id_, ray, seen);
+    if (verdict != Verdict::unknown) return verdict == Verdict::hit;
+    return owner_->any_by_mode(ray, owner_->candidates_in(id_, ray), seen);
 }
 
 } // namespace raywise

@@ -15,17 +15,22 @@
 namespace raywise {
 
 /// Told of every search before it starts: in the tree of an area, or in the global one (nothing),
-/// on the closed interval [begin, end] of the ray; then of its steps; then, once, whether the
-/// latest `hit` of the query came from the search just made.
+/// on the closed interval [begin, end] of the ray; then of its steps, one by one in a binary tree
+/// and summed elsewhere; then, once, whether the latest `hit` of the query came from the search
+/// just made.
 template <class O>
-concept QueryObserver = TraceObserver<O> && requires(O& seen, std::optional<AreaId> area, float t) {
-    seen.search(area, t, t);
-    seen.found();
-};
+concept QueryObserver =
+    TraceObserver<O> &&
+    requires(O& seen, std::optional<AreaId> area, float t, const Counts& steps) {
+        seen.search(area, t, t);
+        seen.steps(steps);
+        seen.found();
+    };
 
 /// Watches nothing, costs nothing.
 struct SilentQuery : Silent {
     static constexpr void search(std::optional<AreaId>, float, float) {}
+    static constexpr void steps(const Counts&) {}
     static constexpr void found() {}
 };
 
@@ -34,6 +39,8 @@ struct CountedQuery : Counts {
     constexpr void search(std::optional<AreaId> area, float, float) {
         ++(area ? local_searches : global_searches);
     }
+
+    constexpr void steps(const Counts& counts) { Counts::operator+=(counts); }
 
     static constexpr void found() {}
 
@@ -76,6 +83,8 @@ public:
     void search(std::optional<AreaId> area, float begin, float end) {
         searches_[count_++] = {area, begin, end, {}};
     }
+
+    void steps(const Counts& counts) { latest() += counts; }
 
     /// The latest search found a better hit than those before.
     void found() { answer_ = count_ - 1; }

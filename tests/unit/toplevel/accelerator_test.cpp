@@ -54,7 +54,7 @@ InfluenceArea open_area(std::string name, const Region& region) {
 }
 
 AcceleratorParams random_params(Rng& rng) {
-    AcceleratorParams params;
+    AcceleratorParams params = two_binary_levels();
     params.max_candidates = std::array{1, 2, 8}[rng.below(3)];
     params.index.kind = std::array{
         RegionIndexKind::list, RegionIndexKind::octree, RegionIndexKind::bvh
@@ -150,7 +150,7 @@ TEST(Accelerator, AgreesAtAnyScale) {
             }
             area.affinity.angle_deg = 90;
         }
-        const Accelerator accelerator = build_accelerator(scene, areas);
+        const Accelerator accelerator = build_accelerator(scene, areas, two_binary_levels());
         const PlainTree plain(scene);
         for (int i = 0; i < 200; ++i) {
             Ray ray = random_ray(rng, scene, areas);
@@ -171,7 +171,8 @@ TEST(AcceleratorAgainstTheThesis, APartlyInsideTriangleHidesBehindAnOutsideOne) 
         soup_of({{{0, 0, -1}, {0, 0, 1}, {4, 20, 0}}, {{-9, 5, -9}, {9, 5, -9}, {0, 5, 9}}});
     const Region region = Aabb{{-1, -1, -1}, {3, 1, 1}};
     const Ray ray{.origin = {2, 0, 0}, .direction = {0, 1, 0}};
-    const Accelerator exact = build_accelerator(scene, {open_area("slab", region)});
+    const Accelerator exact =
+        build_accelerator(scene, {open_area("slab", region)}, two_binary_levels());
     Served served;
     const auto hit = exact.closest_hit(ray, served);
     ASSERT_TRUE(hit);
@@ -184,7 +185,7 @@ TEST(AcceleratorAgainstTheThesis, APartlyInsideTriangleHidesBehindAnOutsideOne) 
     EXPECT_EQ(served.searches()[1].end, 10);
     EXPECT_EQ(served.answered(), &served.searches()[1]);
 
-    AcceleratorParams thesis;
+    AcceleratorParams thesis = two_binary_levels();
     thesis.mode = QueryMode::first_hit_wins;
     const Accelerator wrong = build_accelerator(scene, {open_area("slab", region)}, thesis);
     ASSERT_TRUE(wrong.closest_hit(ray));
@@ -196,11 +197,12 @@ TEST(AcceleratorAgainstTheThesis, AWallWithoutAVertexInsideIsLost) {
         soup_of({{{-50, -50, 1}, {50, -50, 1}, {0, 90, 1}}, {{-1, -1, 2}, {1, -1, 2}, {0, 1, 2}}});
     const Region region = Aabb{{-3, -3, -3}, {3, 3, 3}};
     const Ray ray{.origin = {0, 0, 0}, .direction = {0, 0, 1}};
-    const Accelerator exact = build_accelerator(scene, {open_area("room", region)});
+    const Accelerator exact =
+        build_accelerator(scene, {open_area("room", region)}, two_binary_levels());
     ASSERT_TRUE(exact.closest_hit(ray));
     EXPECT_EQ(exact.closest_hit(ray)->prim, PrimId{0});
 
-    AcceleratorParams thesis;
+    AcceleratorParams thesis = two_binary_levels();
     thesis.mode = QueryMode::first_hit_wins;
     thesis.membership.rule = Membership::vertices;
     const Accelerator wrong = build_accelerator(scene, {open_area("room", region)}, thesis);
@@ -219,7 +221,7 @@ TEST(AcceleratorAgainstTheThesis, WithSeveralAreasTheFirstHitIsNotTheClosest) {
     };
     const Ray ray{.origin = {2, 0, 0}, .direction = {0, 1, 0}};
     for (const int candidates : {1, 2}) {
-        AcceleratorParams params;
+        AcceleratorParams params = two_binary_levels();
         params.max_candidates = candidates;
         Served served;
         const auto hit = build_accelerator(scene, areas, params).closest_hit(ray, served);
@@ -227,7 +229,7 @@ TEST(AcceleratorAgainstTheThesis, WithSeveralAreasTheFirstHitIsNotTheClosest) {
         EXPECT_EQ(hit->prim, PrimId{1});
         EXPECT_FALSE(served.went_global()); // the tall area proves it
     }
-    AcceleratorParams thesis;
+    AcceleratorParams thesis = two_binary_levels();
     thesis.mode = QueryMode::first_hit_wins;
     EXPECT_EQ(build_accelerator(scene, areas, thesis).closest_hit(ray)->prim, PrimId{0});
 }
@@ -238,11 +240,11 @@ TEST(AcceleratorAgainstTheThesis, TheFirstHitRuleIsOftenWrongAndTheExactOneNever
         Rng rng(34, seed);
         const Scene scene = random_soup(rng, 400);
         const auto areas = random_areas(rng, 3);
-        AcceleratorParams thesis;
+        AcceleratorParams thesis = two_binary_levels();
         thesis.mode = QueryMode::first_hit_wins;
         thesis.membership.rule = Membership::vertices;
         const Accelerator faithful = build_accelerator(scene, areas, thesis);
-        const Accelerator exact = build_accelerator(scene, areas);
+        const Accelerator exact = build_accelerator(scene, areas, two_binary_levels());
         for (int i = 0; i < 200; ++i) {
             const Ray ray = random_ray(rng, scene, areas);
             const auto expected = brute_force_closest_hit(scene.view(), ray);
@@ -256,8 +258,9 @@ TEST(AcceleratorAgainstTheThesis, TheFirstHitRuleIsOftenWrongAndTheExactOneNever
 TEST(Accelerator, EndsInsideAreAnsweredLocally) {
     const Scene scene = soup_of({{{-9, 5, -9}, {9, 5, -9}, {0, 5, 9}}});
     const Region region = Aabb{{-1, -1, -1}, {1, 2, 1}};
-    const Accelerator accelerator = build_accelerator(scene, {open_area("room", region)});
-    EXPECT_TRUE(accelerator.local(AreaId{0}).tree.is_empty());
+    const Accelerator accelerator =
+        build_accelerator(scene, {open_area("room", region)}, two_binary_levels());
+    EXPECT_TRUE(accelerator.local(AreaId{0}).tree.binary()->tree.is_empty());
     const Ray shadow{.origin = {0, 0, 0}, .direction = {0, 1, 0}, .t_max = 1.5F};
     Served served;
     EXPECT_FALSE(accelerator.any_hit(shadow, served));
@@ -276,8 +279,9 @@ TEST(Accelerator, EndsInsideAreAnsweredLocally) {
 
 TEST(Accelerator, ALocalOccluderBeyondTheExitIsEnoughForAnyHit) {
     const Scene scene = soup_of({{{0, 0, -1}, {0, 0, 1}, {4, 20, 0}}});
-    const Accelerator accelerator =
-        build_accelerator(scene, {open_area("slab", Aabb{{-1, -1, -1}, {3, 1, 1}})});
+    const Accelerator accelerator = build_accelerator(
+        scene, {open_area("slab", Aabb{{-1, -1, -1}, {3, 1, 1}})}, two_binary_levels()
+    );
     Served served;
     EXPECT_TRUE(accelerator.any_hit({.origin = {2, 0, 0}, .direction = {0, 1, 0}}, served));
     EXPECT_FALSE(served.went_global());
@@ -290,7 +294,8 @@ TEST(Accelerator, TiesBetweenTreesGoToTheLowestId) {
     const Accelerator accelerator = build_accelerator(
         scene,
         {open_area("a", Aabb{{-1, -1, -1}, {1, 5, 1}}), open_area("b", Aabb{{-1, 0, -1}, {1, 9, 1}})
-        }
+        },
+        two_binary_levels()
     );
     Ray ray{.origin = {0, 0, 0}, .direction = {0, 1, 0}};
     EXPECT_EQ(accelerator.closest_hit(ray)->prim, PrimId{0});
@@ -306,7 +311,7 @@ TEST(Accelerator, NonAffineRaysAndOutsidersGoToTheGlobalTreeAlone) {
     const Scene scene = random_soup(rng, 50);
     InfluenceArea area = open_area("sun", Aabb{{-2, -2, -2}, {2, 2, 2}});
     area.affinity.angle_deg = 5;
-    const Accelerator accelerator = build_accelerator(scene, {area});
+    const Accelerator accelerator = build_accelerator(scene, {area}, two_binary_levels());
     const auto searched = [&](const Ray& ray) {
         Served served;
         static_cast<void>(accelerator.closest_hit(ray, served));
@@ -322,8 +327,9 @@ TEST(Accelerator, NonAffineRaysAndOutsidersGoToTheGlobalTreeAlone) {
 TEST(Accelerator, InvalidRaysMissAndVisitNothing) {
     Rng rng(36);
     const Scene scene = random_soup(rng, 50);
-    const Accelerator accelerator =
-        build_accelerator(scene, {open_area("all", Aabb{{-9, -9, -9}, {9, 9, 9}})});
+    const Accelerator accelerator = build_accelerator(
+        scene, {open_area("all", Aabb{{-9, -9, -9}, {9, 9, 9}})}, two_binary_levels()
+    );
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const float infinity = std::numeric_limits<float>::infinity();
     const std::vector<Ray> rays{
@@ -356,7 +362,7 @@ TEST(Accelerator, BatchesEqualSingleQueriesOnAnyNumberOfThreads) {
     const Scene scene = random_soup(rng, 200);
     const auto areas = random_areas(rng, 4);
     const Executor four(4);
-    const Accelerator accelerator = build_accelerator(scene, areas, {}, four);
+    const Accelerator accelerator = build_accelerator(scene, areas, two_binary_levels(), four);
     std::vector<Ray> rays;
     for (int i = 0; i < 3000; ++i)
         rays.push_back(random_ray(rng, scene, areas));
@@ -383,15 +389,17 @@ TEST(Accelerator, IsTheSameForAnyNumberOfThreads) {
     const Scene scene = random_soup(rng, 5000);
     const auto areas = random_areas(rng, 3);
     const Executor four(4);
-    const Accelerator a = build_accelerator(scene, areas);
-    const Accelerator b = build_accelerator(scene, areas, {}, four);
+    const Accelerator a = build_accelerator(scene, areas, two_binary_levels());
+    const Accelerator b = build_accelerator(scene, areas, two_binary_levels(), four);
     const auto is_equal = [](const Bvh& x, const Bvh& y) {
         return x.prims == y.prims && x.nodes.size() == y.nodes.size() &&
                std::memcmp(x.nodes.data(), y.nodes.data(), x.nodes.size() * sizeof(Node)) == 0;
     };
-    EXPECT_TRUE(is_equal(a.global_tree(), b.global_tree()));
+    EXPECT_TRUE(is_equal(a.global_tree().binary()->tree, b.global_tree().binary()->tree));
     for (std::size_t i = 0; i < areas.size(); ++i) {
-        EXPECT_TRUE(is_equal(a.local(to_area(i)).tree, b.local(to_area(i)).tree));
+        EXPECT_TRUE(is_equal(
+            a.local(to_area(i)).tree.binary()->tree, b.local(to_area(i)).tree.binary()->tree
+        ));
     }
 }
 
@@ -430,7 +438,9 @@ TEST(Served, SaysWhoSearchedWhatAndCountsLikeCountedQuery) {
     Rng rng(39);
     const Scene scene = random_soup(rng, 100);
     const auto areas = random_areas(rng, 5);
-    const Accelerator accelerator = build_accelerator(scene, areas, {.max_candidates = 4});
+    AcceleratorParams four_candidates = two_binary_levels();
+    four_candidates.max_candidates = 4;
+    const Accelerator accelerator = build_accelerator(scene, areas, four_candidates);
     for (int i = 0; i < 2000; ++i) {
         const Ray ray = random_ray(rng, scene, areas);
         Served served;
@@ -460,18 +470,18 @@ TEST(Accelerator, ForgoesAnAreaThatSavesNothing) {
     const InfluenceArea small = InfluenceArea::parallel(
         "small", {.direction = {0, 0, 1}, .region = Aabb{{-0.1F, -0.1F, -0.1F}, {0.1F, 0.1F, 0.1F}}}
     );
-    AcceleratorParams params;
+    AcceleratorParams params = two_binary_levels();
     params.gain = GainParams{.rays = 256};
     const Accelerator accelerator = build_accelerator(scene, {small}, params);
     const LocalStructure& local = accelerator.local(AreaId{0});
     ASSERT_TRUE(local.gain);
-    EXPECT_EQ(local.is_enabled, *local.gain > 0);
+    EXPECT_EQ(local.has_tree, *local.gain > 0);
     const PlainTree plain(scene);
     for (int i = 0; i < 200; ++i) {
         const Ray ray = random_ray(rng, scene, {small});
         Served served;
         ASSERT_TRUE(is_same(accelerator["small"].closest_hit(ray, served), plain.closest_hit(ray)));
-        ASSERT_TRUE(local.is_enabled || served.searches().size() == 1);
+        ASSERT_TRUE(local.has_tree || served.searches().size() == 1);
     }
     EXPECT_FALSE(build_accelerator(scene, {small}).local(AreaId{0}).gain);
 }
@@ -479,18 +489,21 @@ TEST(Accelerator, ForgoesAnAreaThatSavesNothing) {
 TEST(Accelerator, MemoryIsThatOfTheContainers) {
     Rng rng(41);
     const Scene scene = random_soup(rng, 100);
-    const Accelerator accelerator = build_accelerator(scene, random_areas(rng, 2));
+    const Accelerator accelerator =
+        build_accelerator(scene, random_areas(rng, 2), two_binary_levels());
     const AcceleratorMemory memory = accelerator.measure_memory();
+    const Bvh& tree = accelerator.global_tree().binary()->tree;
     EXPECT_GE(
-        memory.global_tree, accelerator.global_tree().nodes.size() * 32 + scene.triangles.size() * 4
+        memory.global_tree,
+        tree.nodes.size() * 32 + scene.triangles.size() * 4 + tree.prims.size() * 36
     );
-    EXPECT_EQ(memory.global_triangles, accelerator.global_tree().prims.size() * 36);
+    EXPECT_GT(memory.local_trees, 0U);
+    EXPECT_EQ(memory.grids, 0U);
     EXPECT_GE(memory.areas, 2 * sizeof(InfluenceArea));
     EXPECT_GT(memory.index, 0U);
     EXPECT_EQ(
         memory.total(),
-        memory.global_tree + memory.global_triangles + memory.local_trees + memory.local_triangles +
-            memory.areas + memory.index
+        memory.global_tree + memory.local_trees + memory.grids + memory.areas + memory.index
     );
 }
 

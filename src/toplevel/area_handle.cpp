@@ -1,0 +1,158 @@
+// Queries of callers who know which area their rays belong to.
+#include "toplevel/batches.hpp"
+
+#include <raywise/core/error.hpp>
+#include <raywise/toplevel/accelerator.hpp>
+#include <raywise/toplevel/pencil_of.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <memory>
+
+namespace raywise {
+namespace {
+
+/// The pencil that shadow rays of the area belong to.
+Pencil shadow_pencil(const InfluenceArea& area) {
+    const std::optional<Pencil> pencil = central_pencil_of(area);
+    if (!pencil) throw Error("occluded: area '" + area.name + "' has no emitter to point to");
+    return *pencil;
+}
+
+/// The shadow ray that starts `offset` scene units away from the point.
+Ray shadow_ray(const Pencil& pencil, Vec3 point, float offset) {
+    Ray ray = pencil.shadow_ray(point);
+    ray.t_min = offset;
+    if (pencil.kind() == Pencil::Kind::radial) {
+        const double distance = length(to_double(ray.direction));
+        ray.t_min = static_cast<float>(static_cast<double>(offset) / distance);
+    }
+    return ray;
+}
+
+/// Answers the rays that `ray_of(i)` makes, a block at a time: a batch that a grid can sort,
+/// without room for all rays at once.
+template <class RayOf>
+void occluded_by_blocks(
+    const AreaHandle& handle,
+    std::span<bool> shadowed,
+    const Executor& executor,
+    const RayOf& ray_of
+) {
+    constexpr std::size_t block = std::size_t{1} << 18;
+    std::vector<Ray> rays(std::min(block, shadowed.size()));
+    for (std::size_t first = 0; first < shadowed.size(); first += block) {
+        const std::size_t count = std::min(block, shadowed.size() - first);
+        executor
+            .for_each_chunk(count, detail::batch_chunk, [&](std::size_t begin, std::size_t end) {
+                for (std::size_t i = begin; i < end; ++i)
+                    rays[i] = ray_of(first + i);
+            });
+        handle.any_hits(std::span(rays).first(count), shadowed.subspan(first, count), executor);
+    }
+}
+
+} // namespace
+
+const LocalStructure& AreaHandle::structure() const {
+    return owner_->local(id_);
+}
+
+const InfluenceArea& AreaHandle::area() const {
+    return owner_->areas()[static_cast<std::size_t>(id_)];
+}
+
+const Pencil& AreaHandle::pencil() const {
+    if (!structure().pencil) throw Error("accelerator: area '" + area().name + "' is not exact");
+    return *structure().pencil;
+}
+
+const StructureChoice& AreaHandle::choice() const {
+    return structure().choice;
+}
+
+std::string AreaHandle::explain() const {
+    return raywise::explain(choice());
+}
+
+std::optional<Hit> AreaHandle::closest_hit(const Ray& ray) const {
+    SilentQuery nobody;
+    return closest_hit(ray, nobody);
+}
+
+bool AreaHandle::any_hit(const Ray& ray) const {
+    SilentQuery nobody;
+    return any_hit(ray, nobody);
+}
+
+bool AreaHandle::are_exact(std::span<const Ray> rays, const Executor& executor) const {
+    const PencilGrid* grid = structure().grid.get();
+    if (grid == nullptr) return false;
+    std::atomic<bool> all = true;
+    constexpr std::size_t chunk = 1 << 14;
+    executor.for_each_chunk(rays.size(), chunk, [&](std::size_t begin, std::size_t end) {
+        const auto part = rays.subspan(begin, end - begin);
+        const bool held = std::all_of(part.begin(), part.end(), [&](const Ray& ray) {
+            return grid->covers(ray);
+        });
+        if (!held) all = false;
+    });
+    return all;
+}
+
+void AreaHandle::closest_hits(
+    std::span<const Ray> rays,
+    std::span<Hit> hits,
+    const Executor& executor
+) const {
+    detail::check_answers(rays.size(), hits.size());
+    if (!are_exact(rays, executor)) return detail::closest_batch(*this, rays, hits, executor);
+    structure().grid->closest_hits(
+        rays, hits, [&](const Ray& ray) { return closest_hit(ray).value_or(Hit{}); }, executor
+    );
+}
+
+void AreaHandle::any_hits(
+    std::span<const Ray> rays,
+    std::span<bool> occluded,
+    const Executor& executor
+) const {
+    detail::check_answers(rays.size(), occluded.size());
+    if (!are_exact(rays, executor)) return detail::any_batch(*this, rays, occluded, executor);
+    structure().grid->any_hits(
+        rays, occluded, [&](const Ray& ray) { return any_hit(ray); }, executor
+    );
+}
+
+void AreaHandle::occluded(
+    std::span<const Vec3> points,
+    std::span<bool> shadowed,
+    float offset,
+    const Executor& executor
+) const {
+    detail::check_answers(points.size(), shadowed.size());
+    if (!(offset >= 0) || !std::isfinite(offset)) {
+        throw Error("occluded: offset must be finite and at least 0");
+    }
+    const Pencil pencil = shadow_pencil(area());
+    occluded_by_blocks(*this, shadowed, executor, [&](std::size_t i) {
+        return shadow_ray(pencil, points[i], offset);
+    });
+}
+
+void AreaHandle::occluded(
+    std::span<const Vec3> points,
+    std::span<const PrimId> surfaces,
+    std::span<bool> shadowed,
+    const Executor& executor
+) const {
+    detail::check_answers(points.size(), shadowed.size());
+    detail::check_answers(points.size(), surfaces.size());
+    const Pencil pencil = shadow_pencil(area());
+    occluded_by_blocks(*this, shadowed, executor, [&](std::size_t i) {
+        return pencil.shadow_ray(points[i], 0, surfaces[i]);
+    });
+}
+
+} // namespace raywise

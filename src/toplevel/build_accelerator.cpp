@@ -1,0 +1,294 @@
+// Builds an accelerator: the global tree, then for each area the structure that pays.
+#include "toplevel/predicted_costs.hpp"
+#include "toplevel/sampled_rays.hpp"
+
+#include <raywise/bvh/remap.hpp>
+#include <raywise/core/error.hpp>
+#include <raywise/optimize/collapse.hpp>
+#include <raywise/toplevel/accelerator.hpp>
+#include <raywise/toplevel/pencil_of.hpp>
+
+#include <algorithm>
+#include <set>
+#include <string>
+#include <utility>
+
+namespace raywise {
+
+namespace {
+
+void check(const AcceleratorParams& params) {
+    if (params.max_candidates < 1 || params.max_candidates > 8) {
+        throw Error("accelerator: max_candidates must be in [1, 8]");
+    }
+    if (params.gain && (params.gain->rays < 1 || params.gain->rays > 10'000'000)) {
+        throw Error("accelerator: gain rays must be in [1, 10^7]");
+    }
+    if (params.global_structure != StructureKind::binary_tree &&
+        params.global_structure != StructureKind::wide_tree) {
+        throw Error("accelerator: the global structure is a binary or a wide tree");
+    }
+    if (params.mode == QueryMode::first_hit_wins) return;
+    if (params.membership.rule != Membership::overlap) {
+        throw Error("accelerator: membership by vertices gives wrong answers; it needs the mode "
+                    "first_hit_wins");
+    }
+    if (params.index.kind == RegionIndexKind::octree &&
+        params.index.octree.mode == OctreeMode::over) {
+        throw Error("accelerator: an octree that answers too many areas needs the mode "
+                    "first_hit_wins");
+    }
+}
+
+void check_names(const std::vector<InfluenceArea>& areas) {
+    std::set<std::string_view> names;
+    for (const InfluenceArea& area : areas) {
+        if (!names.insert(area.name).second) {
+            throw Error("accelerator: two influence areas are named '" + area.name + "'");
+        }
+    }
+}
+
+void check(const AreaUse& use) {
+    if (use.expected_rays && !(*use.expected_rays >= 0)) {
+        throw Error("accelerator: expected_rays must be at least 0");
+    }
+}
+
+void check_uses(const AcceleratorParams& params, const std::vector<InfluenceArea>& areas) {
+    check(params.use);
+    for (const auto& [name, use] : params.uses) {
+        check(use);
+        const bool is_known =
+            std::any_of(areas.begin(), areas.end(), [&](const InfluenceArea& area) {
+                return area.name == name;
+            });
+        if (!is_known) {
+            throw Error("accelerator: no influence area is named '" + name + "', but has a use");
+        }
+    }
+}
+
+/// Expected cost of a ray that hits the root, unordered and unpruned, by the area's own measure.
+/// Counted rays would cost O(rays) per node; their areas are judged by surface area.
+double expected_cost(const Bvh& tree, const InfluenceArea& area, const CostConstants& constants) {
+    if (tree.is_empty()) return 0;
+    const auto sum = [&](const auto& measure) {
+        const auto root = static_cast<double>(measure(tree.root().box()));
+        if (!(root > 0)) return 0.0;
+        double cost = 0;
+        for (const Node& node : tree.nodes) {
+            const double work = node.is_leaf() ? constants.prim * static_cast<double>(node.count())
+                                               : 2 * constants.node;
+            cost += work * static_cast<double>(measure(node.box())) / root;
+        }
+        return cost;
+    };
+    const AnyMeasure measure = measure_of(area.distribution);
+    if (std::holds_alternative<MeasuredMeasure>(measure)) return sum(SurfaceMeasure{});
+    return std::visit(sum, measure);
+}
+
+/// Cost per ray that the area saves against the global tree alone; negative when it costs more.
+double measure_gain(const Accelerator& accelerator, AreaId id, const GainParams& params) {
+    const AreaHandle handle = accelerator[id];
+    CountedQuery with_area;
+    CountedQuery global_alone;
+    for (const Ray& ray : detail::sampled_rays(handle.area(), params.rays, params.seed)) {
+        static_cast<void>(handle.closest_hit(ray, with_area));
+        static_cast<void>(accelerator.global_tree().closest_hit(ray, global_alone));
+    }
+    return (cost_of(global_alone) - cost_of(with_area)) / static_cast<double>(params.rays);
+}
+
+} // namespace
+
+namespace detail {
+
+class AcceleratorBuilder {
+public:
+    AcceleratorBuilder(
+        Accelerator& result,
+        const TriangleView& triangles,
+        const Executor& executor,
+        const Progress& progress
+    )
+        : result_(result), triangles_(triangles), executor_(executor), progress_(progress) {}
+
+    void build_global() {
+        progress_.step("build", 0, steps());
+        Bvh tree =
+            build_tree(build_input_of(triangles_, executor_), result_.params_.global, executor_)
+                .tree;
+        result_.global_tree_ =
+            traced(std::move(tree), result_.params_.global_structure, SurfaceMeasure{});
+        std::vector<Region> regions;
+        for (const InfluenceArea& area : result_.areas_)
+            regions.push_back(area.region);
+        result_.index_ = build_region_index(regions, result_.params_.index);
+    }
+
+    void build_locals() {
+        result_.locals_.clear();
+        result_.with_grid_.clear();
+        for (const InfluenceArea& area : result_.areas_) {
+            progress_.step("build", 1 + result_.locals_.size(), steps());
+            result_.locals_.push_back(build_local(area));
+            if (result_.locals_.back().grid)
+                result_.with_grid_.push_back(to_area(result_.locals_.size() - 1));
+        }
+        if (result_.params_.gain) disable_what_saves_nothing(*result_.params_.gain);
+        result_.any_tree_ = std::any_of(
+            result_.locals_.begin(),
+            result_.locals_.end(),
+            [](const LocalStructure& structure) { return structure.has_tree; }
+        );
+        progress_.step("build", steps(), steps());
+    }
+
+private:
+    [[nodiscard]] std::size_t steps() const { return result_.areas_.size() + 1; }
+
+    template <HitMeasure M>
+    [[nodiscard]] TracedTree traced(Bvh tree, StructureKind kind, const M& measure) const {
+        if (kind == StructureKind::binary_tree) return {std::move(tree), triangles_};
+        return TracedTree(collapse(tree, triangles_, measure, {}, executor_));
+    }
+
+    [[nodiscard]] LocalStructure build_local(const InfluenceArea& area) const {
+        LocalStructure structure;
+        structure.pencil = pencil_of(area);
+        structure.choice = choose(area, structure);
+        switch (structure.choice.kind) {
+        case StructureKind::none:
+            break;
+        case StructureKind::pencil_grid:
+            structure.grid = std::make_shared<const PencilGrid>(
+                build_pencil_grid(triangles_, *structure.pencil, {}, executor_)
+            );
+            break;
+        case StructureKind::binary_tree:
+        case StructureKind::wide_tree:
+        case StructureKind::framed_tree:
+            build_local_tree(structure, area);
+            break;
+        }
+        return structure;
+    }
+
+    void build_local_tree(LocalStructure& structure, const InfluenceArea& area) const {
+        const AcceleratorParams& params = result_.params_;
+        const auto members = members_of(triangles_, area.region, params.membership, executor_);
+        const BuildInput input = build_input_of(triangles_, members, executor_);
+        Bvh tree = build_tree(input, area.distribution, params.local, executor_).tree;
+        remap_prims(tree, members);
+        structure.expected_cost = expected_cost(tree, area, params.local.binned.cost);
+        structure.tree = std::visit(
+            [&](const auto& measure) {
+                return traced(std::move(tree), structure.choice.kind, measure);
+            },
+            measure_of(area.distribution)
+        );
+        structure.has_tree = true;
+    }
+
+    [[nodiscard]] const AreaUse& use_of(const InfluenceArea& area) const {
+        const auto named = result_.params_.uses.find(area.name);
+        return named == result_.params_.uses.end() ? result_.params_.use : named->second;
+    }
+
+    [[nodiscard]] StructureChoice
+    choose(const InfluenceArea& area, const LocalStructure& structure) const {
+        const AreaUse& use = use_of(area);
+        StructureChoice choice;
+        const auto triangles = static_cast<double>(triangles_.size());
+        choice.expected_rays = use.expected_rays.value_or(10 * triangles);
+        if (use.structure) {
+            choice.kind = *use.structure;
+            choice.is_forced = true;
+            check_forced(area, structure, choice.kind);
+            return choice;
+        }
+        choice.predictions.push_back({StructureKind::none, 0, global_ray_ns(area)});
+        if (structure.pencil) choice.predictions.push_back(predict_grid(triangles, executor_));
+        choice.kind = cheapest(choice.predictions, choice.expected_rays).kind;
+        return choice;
+    }
+
+    static void
+    check_forced(const InfluenceArea& area, const LocalStructure& structure, StructureKind kind) {
+        if (kind == StructureKind::pencil_grid && !structure.pencil) {
+            throw Error(
+                "accelerator: area '" + area.name + "' is not exact, so it has no pencil grid"
+            );
+        }
+    }
+
+    [[nodiscard]] double global_ray_ns(const InfluenceArea& area) const {
+        CountedQuery counted;
+        const std::vector<Ray> rays = sampled_rays(area, sampled, 1);
+        for (const Ray& ray : rays)
+            static_cast<void>(result_.global_tree_.closest_hit(ray, counted));
+        return predicted_ns(counted) / static_cast<double>(rays.size());
+    }
+
+    void disable_what_saves_nothing(const GainParams& params) {
+        for (std::size_t i = 0; i < result_.areas_.size(); ++i) {
+            LocalStructure& structure = result_.locals_[i];
+            structure.gain = measure_gain(result_, to_area(i), params);
+            structure.has_tree = structure.has_tree && *structure.gain > 0;
+        }
+    }
+
+    static constexpr std::size_t sampled = 256; ///< rays per prediction
+
+    Accelerator& result_;
+    const TriangleView& triangles_;
+    const Executor& executor_;
+    const Progress& progress_;
+};
+
+} // namespace detail
+
+Accelerator build_accelerator(
+    const TriangleView& triangles,
+    std::vector<InfluenceArea> areas,
+    const AcceleratorParams& params,
+    const Executor& executor,
+    const Progress& progress
+) {
+    check(params);
+    check_names(areas);
+    check_uses(params, areas);
+    Accelerator result;
+    result.params_ = params;
+    result.areas_ = std::move(areas);
+    detail::AcceleratorBuilder builder(result, triangles, executor, progress);
+    builder.build_global();
+    builder.build_locals();
+    return result;
+}
+
+Accelerator build_accelerator(
+    const Scene& scene,
+    std::vector<InfluenceArea> areas,
+    const AcceleratorParams& params,
+    const Executor& executor,
+    const Progress& progress
+) {
+    return build_accelerator(scene.view(), std::move(areas), params, executor, progress);
+}
+
+Accelerator Accelerator::with_local_heuristic(
+    const Heuristic& local,
+    const TriangleView& triangles,
+    const Executor& executor,
+    const Progress& progress
+) const {
+    Accelerator result = *this;
+    result.params_.local = local;
+    detail::AcceleratorBuilder(result, triangles, executor, progress).build_locals();
+    return result;
+}
+
+} // namespace raywise

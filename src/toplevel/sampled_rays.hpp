@@ -1,0 +1,18 @@
+// Rays that an area's user may ask for, to judge structures by.
+#pragma once
+
+#include <raywise/distribution/influence_area.hpp>
+#include <raywise/geometry/ray.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace raywise::detail {
+
+/// `count` rays of the area's distribution that start somewhere along their way through the region;
+/// rays as sampled start on the window, which may lie on the region's border or outside.
+[[nodiscard]] std::vector<Ray>
+sampled_rays(const InfluenceArea& area, std::size_t count, std::uint64_t seed);
+
+} // namespace raywise::detail

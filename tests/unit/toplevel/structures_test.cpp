@@ -1,0 +1,205 @@
+// The accelerator with the structures that make it fast, against one plain tree over everything.
+#include "support/random_areas.hpp"
+
+#include <raywise/core/error.hpp>
+#include <raywise/scene/generate.hpp>
+#include <raywise/toplevel/accelerator.hpp>
+#include <raywise/trace/closest_hit.hpp>
+#include <raywise/trace/triangles.hpp>
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <memory>
+
+namespace raywise {
+namespace {
+
+using test_support::random_areas;
+using test_support::random_ray;
+using test_support::random_soup;
+
+/// The oracle.
+BinaryTree plain_tree(const Scene& scene) {
+    Bvh tree = build_tree(build_input_of(scene.view()), surface_area_heuristic()).tree;
+    PackedTriangles triangles(tree, scene.view());
+    return {std::move(tree), std::move(triangles)};
+}
+
+bool is_same(const std::optional<Hit>& a, const std::optional<Hit>& b) {
+    if (a.has_value() != b.has_value()) return false;
+    return !a || (a->t == b->t && a->prim == b->prim && a->front == b->front);
+}
+
+AcceleratorParams forced(StructureKind kind) {
+    AcceleratorParams params;
+    params.use.structure = kind;
+    return params;
+}
+
+/// A ray of the pencil: to the emitter, from it, cut short, on a surface.
+Ray pencil_ray(Rng& rng, const Pencil& pencil, const Scene& scene) {
+    const std::array<std::uint32_t, 3>& corner = scene.triangles[rng.below(scene.triangles.size())];
+    Vec3 point = to_float(test_support::random_point(rng, -7, 7));
+    if (rng.below(2) == 0) point = scene.vertices[corner[rng.below(3)]];
+    Ray ray = pencil.shadow_ray(point);
+    if (rng.below(3) == 0) ray.excluded = to_prim(rng.below(scene.triangles.size()));
+    if (rng.below(3) == 0) ray.t_min = rng.uniform(0.0F, 0.5F);
+    if (rng.below(4) == 0) ray.t_max = rng.uniform(0.5F, 1.0F);
+    if (rng.below(2) == 0) return ray;
+    if (pencil.kind() == Pencil::Kind::parallel) {
+        ray.direction = pencil.direction();
+    } else {
+        ray = {.origin = pencil.apex(), .direction = point - pencil.apex()};
+    }
+    return ray;
+}
+
+TEST(Structures, EveryKindAnswersLikeOnePlainTree) {
+    std::size_t by_grid = 0;
+    std::size_t rays = 0;
+    for (std::uint64_t seed = 0; seed < 80; ++seed) {
+        Rng rng(51, seed);
+        const Scene scene = random_soup(rng, 1 + rng.below(rng.below(2) == 0 ? 20 : 600));
+        const auto areas = random_areas(rng, 1 + rng.below(5));
+        AcceleratorParams params;
+        for (const InfluenceArea& area : areas) {
+            if (rng.below(2) == 0) params.uses[area.name].structure = StructureKind::wide_tree;
+            if (rng.below(4) == 0) params.uses[area.name].expected_rays = 0;
+        }
+        const Accelerator accelerator = build_accelerator(scene, areas, params);
+        const BinaryTree plain = plain_tree(scene);
+        for (int i = 0; i < 400; ++i) {
+            const AreaHandle handle = accelerator[to_area(rng.below(areas.size()))];
+            const auto& pencil = accelerator.local(handle.id()).pencil;
+            const Ray ray = pencil && rng.below(2) == 0 ? pencil_ray(rng, *pencil, scene)
+                                                        : random_ray(rng, scene, areas);
+            const auto expected = closest_hit(plain.tree, plain.triangles, ray);
+            Served served;
+            ASSERT_TRUE(is_same(accelerator.closest_hit(ray), expected)) << seed << " ray " << i;
+            ASSERT_TRUE(is_same(accelerator.closest_hit(ray, served), expected));
+            ASSERT_EQ(accelerator.any_hit(ray), expected.has_value()) << seed << " ray " << i;
+            ASSERT_TRUE(is_same(handle.closest_hit(ray), expected)) << seed << " ray " << i;
+            ASSERT_EQ(handle.any_hit(ray), expected.has_value()) << seed << " ray " << i;
+            ++rays;
+            const Search* answer = served.answered();
+            by_grid += answer && answer->area && accelerator.local(*answer->area).grid ? 1U : 0U;
+        }
+    }
+    EXPECT_GT(by_grid, rays / 50);
+}
+
+TEST(Structures, BatchesOfExactRaysEqualSingleQueriesOnAnyNumberOfThreads) {
+    const Scene scene = generate_courtyard({.triangles = 20'000});
+    const Obb around = obb_around(bounds(scene));
+    const std::vector areas{
+        InfluenceArea::parallel("sun", {.direction = {0.3, -0.8, 0.5}, .region = around}),
+        InfluenceArea::radial("lamp", {.apex = {0.5, 3, 0.25}, .region = around})
+    };
+    const Executor four(4);
+    const Accelerator accelerator =
+        build_accelerator(scene, areas, forced(StructureKind::pencil_grid), four);
+    const BinaryTree plain = plain_tree(scene);
+    for (const AreaHandle handle : {accelerator["sun"], accelerator["lamp"]}) {
+        Rng rng(52);
+        std::vector<Ray> rays;
+        for (int i = 0; i < 20'000; ++i) {
+            const Ray ray = pencil_ray(rng, handle.pencil(), scene);
+            if (is_valid(ray)) rays.push_back(ray);
+        }
+        const auto any = std::make_unique<bool[]>(rays.size());
+        std::vector<Hit> hits(rays.size());
+        handle.any_hits(rays, {any.get(), rays.size()}, four);
+        handle.closest_hits(rays, hits, four);
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            const auto expected = closest_hit(plain.tree, plain.triangles, rays[i]);
+            ASSERT_EQ(any[i], expected.has_value()) << i;
+            ASSERT_EQ(hits[i].prim, expected.value_or(Hit{}).prim) << i;
+            ASSERT_EQ(hits[i].t, expected.value_or(Hit{}).t) << i;
+        }
+    }
+}
+
+TEST(Structures, ASurfaceDoesNotShadeThePointsOnIt) {
+    const Scene scene = generate_courtyard({.triangles = 20'000});
+    const InfluenceArea sun = InfluenceArea::parallel(
+        "sun", {.direction = {0.3, -0.8, 0.5}, .region = obb_around(bounds(scene))}
+    );
+    const Accelerator accelerator = build_accelerator(scene, {sun});
+    std::vector<Vec3> points;
+    std::vector<PrimId> surfaces;
+    for (std::size_t i = 0; i < scene.triangles.size(); i += 7) {
+        const Triangle triangle = scene.view()[to_prim(i)];
+        points.push_back((triangle.v0 + triangle.v1 + triangle.v2) * (1.0F / 3));
+        surfaces.push_back(to_prim(i));
+    }
+    const auto shadowed = std::make_unique<bool[]>(points.size());
+    accelerator["sun"].occluded(points, surfaces, {shadowed.get(), points.size()});
+    const BinaryTree plain = plain_tree(scene);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const Ray ray = accelerator["sun"].pencil().shadow_ray(points[i], 0, surfaces[i]);
+        ASSERT_EQ(shadowed[i], closest_hit(plain.tree, plain.triangles, ray).has_value()) << i;
+    }
+}
+
+TEST(Structures, ChoiceFollowsTheExpectedRays) {
+    const Scene scene = generate_terrain({.triangles = 20'000});
+    const InfluenceArea sun = InfluenceArea::parallel(
+        "sun", {.direction = {0.3, -0.8, 0.5}, .region = obb_around(bounds(scene))}
+    );
+    const auto choice_for = [&](double rays) {
+        AcceleratorParams params;
+        params.uses["sun"].expected_rays = rays;
+        return build_accelerator(scene, {sun}, params)["sun"].choice();
+    };
+    EXPECT_EQ(choice_for(0).kind, StructureKind::none);
+    EXPECT_EQ(choice_for(1e9).kind, StructureKind::pencil_grid);
+    EXPECT_EQ(choice_for(1e9).predictions.front().kind, StructureKind::none);
+    const std::string text = build_accelerator(scene, {sun})["sun"].explain();
+    EXPECT_NE(text.find("pencil_grid, cheapest for 2e+05 rays"), std::string::npos) << text;
+    EXPECT_NE(text.find("pays from"), std::string::npos) << text;
+}
+
+TEST(Structures, UnknownRaysOfAPencilFindItsGrid) {
+    const Scene scene = generate_terrain({.triangles = 5'000});
+    const InfluenceArea sun = InfluenceArea::parallel(
+        "sun", {.direction = {0.3, -0.8, 0.5}, .region = obb_around(bounds(scene))}
+    );
+    const Accelerator accelerator =
+        build_accelerator(scene, {sun}, forced(StructureKind::pencil_grid));
+    Served served;
+    static_cast<void>(
+        accelerator.any_hit(accelerator["sun"].pencil().shadow_ray({1, 500, 1}), served)
+    );
+    ASSERT_EQ(served.searches().size(), 1U);
+    EXPECT_EQ(served.searches()[0].area, AreaId{0});
+    Served other;
+    static_cast<void>(accelerator.any_hit({.origin = {1, 500, 1}, .direction = {1, 1, 1}}, other));
+    ASSERT_EQ(other.searches().size(), 1U);
+    EXPECT_FALSE(other.searches()[0].area);
+}
+
+TEST(Structures, RefusesWhatCannotBe) {
+    const Scene scene = generate_terrain({.triangles = 1'000});
+    const Obb around = obb_around(bounds(scene));
+    const std::vector blurred{InfluenceArea::parallel(
+        "sun", {.direction = {0.3, -0.8, 0.5}, .region = around, .cone_half_angle_deg = 1}
+    )};
+    const auto refused = [&](const AcceleratorParams& params) {
+        EXPECT_THROW(static_cast<void>(build_accelerator(scene, blurred, params)), Error);
+    };
+    refused(forced(StructureKind::pencil_grid));
+    AcceleratorParams params;
+    params.global_structure = StructureKind::pencil_grid;
+    refused(params);
+    params = {};
+    params.uses["moon"].expected_rays = 1;
+    refused(params);
+    params = {};
+    params.use.expected_rays = -1;
+    refused(params);
+    EXPECT_THROW(static_cast<void>(build_accelerator(scene, blurred)["sun"].pencil()), Error);
+}
+
+} // namespace
+} // namespace raywise
