@@ -115,7 +115,9 @@ public:
     )
         : result_(result), triangles_(triangles), executor_(executor), progress_(progress) {}
 
-    void build_global() {
+    void build_global(const AcceleratorParams& params, std::vector<InfluenceArea> areas) {
+        result_.params_ = params;
+        result_.areas_ = std::move(areas);
         progress_.step("build", 0, steps());
         Bvh tree =
             build_tree(build_input_of(triangles_, executor_), result_.params_.global, executor_)
@@ -261,10 +263,8 @@ Accelerator build_accelerator(
     check_names(areas);
     check_uses(params, areas);
     Accelerator result;
-    result.params_ = params;
-    result.areas_ = std::move(areas);
     detail::AcceleratorBuilder builder(result, triangles, executor, progress);
-    builder.build_global();
+    builder.build_global(params, std::move(areas));
     builder.build_locals();
     return result;
 }
