@@ -11,16 +11,16 @@ namespace raywise::detail {
 /// Of tracing a wide tree: a node visit waits for its cache lines and for a guessed branch, which
 /// takes longer than its arithmetic.
 [[nodiscard]] inline double predicted_ns(const Counts& counts) {
-    constexpr double visit_ns = 8;
-    constexpr double test_ns = 1.5;
+    constexpr double visit_ns = 12;
+    constexpr double test_ns = 3;
     return visit_ns * static_cast<double>(counts.node_visits()) +
            test_ns * static_cast<double>(counts.prims);
 }
 
 /// A pencil grid over so many triangles.
 [[nodiscard]] inline StructurePrediction predict_grid(double triangles, const Executor& executor) {
-    constexpr double build_ns = 300; // per triangle, serial
-    constexpr double ray_ns = 30;
+    constexpr double build_ns = 250; // per triangle, serial
+    constexpr double ray_ns = 25;
     return {StructureKind::pencil_grid, build_ns * triangles / executor.threads(), ray_ns};
 }
 

@@ -110,7 +110,9 @@ std::vector<ThreadRow> bench_threads(
     );
     const std::vector<Ray>& sun = made.classes.front().emitters.front().rays;
     const std::vector<Ray>& bounces = made.classes.back().emitters.front().rays;
-    const Accelerator accelerator = build_accelerator(scene, made.areas, {}, all_threads, progress);
+    const Accelerator accelerator = build_accelerator(
+        scene, made.areas, {.use = {.expected_rays = 1e9}}, all_threads, progress
+    );
     const AreaHandle area = accelerator[made.areas.front().name];
     const auto occluded = std::make_unique<bool[]>(sun.size());
     std::vector<Hit> hits(bounces.size());

@@ -159,8 +159,9 @@ private:
     Accelerator build(const std::string& name, std::vector<InfluenceArea> areas) {
         step("building " + name);
         const Stopwatch watch;
-        Accelerator accelerator =
-            build_accelerator(scene_, std::move(areas), {}, machine_.build, progress_);
+        Accelerator accelerator = build_accelerator(
+            scene_, std::move(areas), {.use = {.expected_rays = 1e9}}, machine_.build, progress_
+        );
         add_build(name, watch.milliseconds(), accelerator.measure_memory().total());
         return accelerator;
     }
