@@ -30,6 +30,7 @@ struct BenchOptions {
     std::string chart;
     bool quick = false;
     bool scaling = false;
+    std::size_t largest = 0;
     std::size_t paths = 0;
     int emitters = 0;
 };
@@ -100,7 +101,8 @@ std::vector<std::string> arguments_of(const BenchOptions& options) {
     const std::vector<std::string> names =
         options.scenes.empty() ? std::vector<std::string>{"city", "forest", "terrain"}
                                : options.scenes;
-    return series_of(names, options.quick ? 1'000'000 : 10'000'000);
+    const std::size_t usual = options.quick ? 1'000'000 : 10'000'000;
+    return series_of(names, options.largest > 0 ? options.largest : usual);
 }
 
 std::vector<SceneOptions> scenes_of(const BenchOptions& options) {
@@ -154,7 +156,7 @@ SceneBench bench_scenes(
         provenance.scene += (provenance.scene.empty() ? "" : ", ") + title;
         provenance.scene_hash = scenes.size() == 1 ? hash : mix_bits(provenance.scene_hash ^ hash);
     }
-    if (options.scaling) bench.growth = growth_of(bench.rows);
+    bench.growth = growth_of(bench.rows);
     provenance.facts = {
         {"peer", "Embree " + embree_version()},
         {"trace_threads", fmt::format("{}", machine.trace.threads())},
@@ -229,9 +231,16 @@ Command add_bench(CLI::App& root, CommonOptions& options) {
     app->add_flag(
         "--scaling",
         own->scaling,
-        "Growth over generated scenes of 10^4 to 10^7 triangles (--quick: 10^6), and what threads "
-        "gain; SCENE: names such as city, by default city, forest and terrain"
+        "Growth over generated scenes of 10^4, 10^5, ... triangles, and what threads gain; SCENE: "
+        "names such as city, by default city, forest and terrain"
     );
+    app->add_option(
+           "--largest",
+           own->largest,
+           "Triangles at which --scaling ends; 0: 10000000, with --quick 1000000"
+    )
+        ->check(CLI::Range(std::size_t{0}, std::size_t{100'000'000}))
+        ->capture_default_str();
     app->add_option("--paths", own->paths, "Paths per scene; 0: 262144, with --quick 65536")
         ->check(CLI::Range(std::size_t{0}, std::size_t{100'000'000}))
         ->capture_default_str();

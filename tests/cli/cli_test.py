@@ -15,6 +15,7 @@ import subprocess
 import tempfile
 import time
 import unittest
+import xml.etree.ElementTree
 import zipfile
 import zlib
 
@@ -84,7 +85,7 @@ class Usage(CliTest):
     def test_help_and_version_go_to_standard_output(self):
         self.assertIn(b"compare", self.succeed("--help"))
         self.assertRegex(self.succeed("--version"), rb"^raywise \d+\.\d+\.\d+")
-        for command in ("info", "build", "trace", "compare", "convert"):
+        for command in ("info", "build", "trace", "compare", "convert", "bench"):
             self.assertIn(b"--format", self.succeed(command, "--help"))
 
     def test_unknown_words_are_met_with_the_nearest_known_one(self):
@@ -409,6 +410,83 @@ class Compare(CliTest):
         for name in names:
             width, height = read_png(os.path.join(folder, name))
             self.assertGreater(min(width, height), 50)
+
+
+class Bench(CliTest):
+    ARGUMENTS = ["bench", "--quick", "--paths", "4096"]
+    KEYS = (
+        "scene rays kind query peer ours_mrays peer_mrays ratio spread verified mismatches node_visits triangle_tests"
+    ).split()
+
+    def setUp(self):
+        super().setUp()
+        if b"without Embree" in run(*self.ARGUMENTS, "random:300").stderr:
+            self.skipTest("built without Embree")
+
+    def rows(self, *arguments):
+        report = json.loads(self.succeed(*self.ARGUMENTS, *arguments, "--format", "json"))
+        return report["rows"], report
+
+    def test_every_class_is_verified_and_timed_beside_both_peers(self):
+        rows, report = self.rows("city:1000")
+        kinds = {}
+        for row in rows:
+            for key in self.KEYS:
+                self.assertIn(key, row)
+            self.assertEqual(row["mismatches"], 0, row)
+            self.assertIs(row["verified"], True)
+            self.assertGreater(row["ours_mrays"], 0, row)
+            self.assertGreater(row["ratio"], 0, row)
+            kinds.setdefault(row["kind"], set()).add((row["rays"], row["peer"]))
+        self.assertEqual({kind: len(pairs) for kind, pairs in kinds.items()}, {"exact": 6, "near_affine": 8, "general": 2})
+        self.assertEqual({row["peer"] for row in rows}, {"embree_single", "embree_best"})
+        self.assertIn("Embree 3.", report["provenance"]["peer"])
+        self.assertTrue(any("of ours" in finding for finding in report["findings"]))
+        for table in ("builds", "break_even", "limits"):
+            self.assertTrue(report[table], table)
+
+    def test_rays_depend_on_the_seed_and_nothing_else(self):
+        def hashes(*arguments):
+            return [row["ray_hash"] for row in self.rows("spheres:500", *arguments)[0]]
+
+        self.assertEqual(hashes("--threads", "1"), hashes("--threads", "2"))
+        self.assertNotEqual(hashes(), hashes("--seed", "2"))
+
+    def test_folders_files_and_recipes_are_scenes(self):
+        self.write("b.ply", TETRAHEDRON)
+        self.write("a.ply", TETRAHEDRON)
+        self.write("notes.txt", "no scene")
+        rows, _ = self.rows(self.folder.name, "random:300", "--classes", "primary")
+        self.assertEqual([row["scene"] for row in rows[::2]], ["a", "b", "random:300"])
+
+    def test_scaling_reports_growth_and_threads(self):
+        _, report = self.rows("terrain:500", "terrain:5000", "city:500", "--classes", "primary")
+        self.assertEqual({row["scene"] for row in report["growth"]}, {"terrain"})
+        rows, report = self.rows("--scaling", "terrain", "--largest", "10000")
+        self.assertEqual({row["scene"] for row in rows}, {"terrain:10000"})
+        self.assertEqual(len(report.get("threads", [])), 4 if os.cpu_count() > 1 else 0)
+
+    def test_the_chart_is_an_image_with_a_bar_per_class_and_peer(self):
+        chart = self.path("chart.svg")
+        self.succeed(*self.ARGUMENTS, "random:300", "--classes", "primary,sun", "--chart", chart)
+        root = xml.etree.ElementTree.parse(chart).getroot()
+        self.assertTrue(root.tag.endswith("svg"))
+        words = [element.text for element in root.iter() if element.tag.endswith("text")]
+        self.assertEqual(words.count("sun"), 1)
+        self.assertIn("random:300", words)
+
+    def test_what_cannot_be_measured_is_one_line(self):
+        self.assertIn("did you mean 'primary'?", self.fail(USAGE, "bench", "random:300", "--classes", "primray"))
+        self.assertIn("did you mean 'city'?", self.fail(USAGE, "bench", "citty:300"))
+        self.assertIn("SVG", self.fail(USAGE, "bench", "random:300", "--chart", "chart.jpg"))
+        self.assertIn("no scene files", self.fail(USAGE, "bench", self.folder.name))
+        self.assertIn("--scaling", self.fail(USAGE, "bench", "--scaling", "city:300"))
+        self.fail(USAGE, "bench")
+        self.fail(USAGE, "bench", "random:300", "--emitters", "65")
+        self.fail(IO, "bench", self.path("none.ply"))
+        self.fail(INPUT, "bench", self.write("cut.ply", TETRAHEDRON[:-20]))
+        self.fail(LIMIT, "bench", "terrain:100000", "--max-memory", "1M")
+        self.assertEqual(self.files(), ["cut.ply"])
 
 
 class Signals(CliTest):
