@@ -52,7 +52,7 @@ public:
 
     [[nodiscard]] float weight(NodeId id) const { return weights_[to_index(id)]; }
 
-    /// The slots that a wide node made of `id` has, by falling weight; equal ones left to right.
+    /// The slots that a wide node made of `id` has, by rising weight; equal ones left to right.
     struct Slots {
         std::array<NodeId, width> ids;
         std::size_t count = 0;
@@ -66,7 +66,7 @@ public:
             share(id, width, slots);
         const auto end = slots.ids.begin() + static_cast<std::ptrdiff_t>(slots.count);
         std::stable_sort(slots.ids.begin(), end, [&](NodeId a, NodeId b) {
-            return weight(a) > weight(b);
+            return weight(a) < weight(b);
         });
         return slots;
     }

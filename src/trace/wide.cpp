@@ -42,16 +42,11 @@ bool can_hit(const WideBvh& tree, const Ray& ray) {
     return !tree.is_empty() && is_valid(ray);
 }
 
-std::optional<Hit> to_optional(const Hit& hit) {
-    if (hit.prim == no_prim) return std::nullopt;
-    return hit;
-}
-
 } // namespace
 
 std::optional<Hit> closest_hit(const WideBvh& tree, const Ray& ray, TraceMode mode) {
     if (!can_hit(tree, ray)) return std::nullopt;
-    return to_optional(kernels(mode).closest(tree, ray));
+    return kernels(mode).closest(tree, ray);
 }
 
 bool any_hit(const WideBvh& tree, const Ray& ray, TraceMode mode) {
@@ -70,7 +65,7 @@ void all_hits(
 std::optional<Hit>
 closest_hit(const WideBvh& tree, const Ray& ray, Counts& counts, TraceMode mode) {
     if (!can_hit(tree, ray)) return std::nullopt;
-    return to_optional(kernels(mode).closest_counted(tree, ray, counts));
+    return kernels(mode).closest_counted(tree, ray, counts);
 }
 
 bool any_hit(const WideBvh& tree, const Ray& ray, Counts& counts, TraceMode mode) {

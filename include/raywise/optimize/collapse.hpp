@@ -38,7 +38,7 @@ namespace detail {
 
 /// The wide tree of least expected cost, sum of m(node) over inner nodes plus block_cost m(leaf)
 /// per block over leaves, among those that keep some of the nodes of `tree`, by dynamic
-/// programming. Slots stand by falling measure, so that any-hit rays try the likeliest first; a
+/// programming. Slots stand by rising measure: any-hit rays try the last, likeliest, first; a
 /// triangle stands at most once per leaf. Primitive i of `tree` is triangle i of `triangles`; the
 /// boxes are those of `tree`. No primitives: an empty tree. O(n) time, 40 bytes of temporary memory
 /// per node. The same bytes for any executor. Throws Error for parameters out of range and above

@@ -7,17 +7,19 @@
 #include <raywise/trace/observer.hpp>
 
 #include <cstddef>
+#include <optional>
 #include <string_view>
 #include <vector>
 
 namespace raywise::simd {
 
-/// Queries of one mode. A miss of `closest` is Hit{}. The trees are not empty and the rays valid.
+/// Queries of one mode; a miss of `closest_batch` is Hit{}. The trees are not empty and the rays
+/// valid.
 struct WideKernels {
-    Hit (*closest)(const WideBvh&, const Ray&);
+    std::optional<Hit> (*closest)(const WideBvh&, const Ray&);
     bool (*any)(const WideBvh&, const Ray&);
     void (*all)(const WideBvh&, const Ray&, FunctionRef<void(const Hit&)>);
-    Hit (*closest_counted)(const WideBvh&, const Ray&, Counts&);
+    std::optional<Hit> (*closest_counted)(const WideBvh&, const Ray&, Counts&);
     bool (*any_counted)(const WideBvh&, const Ray&, Counts&);
     void (*closest_batch)(const WideBvh&, const Ray*, Hit*, std::size_t);
     void (*any_batch)(const WideBvh&, const Ray*, bool*, std::size_t);

@@ -4,9 +4,11 @@
 #include <raywise/bvh/wide_bvh.hpp>
 #include <raywise/geometry/ray.hpp>
 
+#include <hwy/base.h>
+
 #include <array>
+#include <cmath>
 #include <cstddef>
-#include <optional>
 
 namespace raywise::simd {
 
@@ -50,13 +52,114 @@ struct WideRay {
     PrimId excluded;
 };
 
-/// Nothing where float arithmetic could overflow or lose its bounds: coordinates beyond 2^60, or a
-/// direction whose largest component is outside [2^-30, 2^30]. `ray` must be valid.
-[[nodiscard]] std::optional<WideRay> prepare(const Ray& ray, const WideBvh& tree);
-
 /// No box that holds a hit whose t, rounded to float, is at most `t` has a greater entry.
 [[nodiscard]] inline float reach(float t) {
     return t * (1 + 16 * 0x1p-24F) + 0x1p-120F;
+}
+
+namespace detail {
+
+inline constexpr float unit_roundoff = 0x1p-24F;
+
+HWY_INLINE PlaneMap map_planes(float o, float d, float inverse, float size, std::size_t axis) {
+    const float outward = 8 * unit_roundoff * size * std::abs(inverse) + 0x1p-100F;
+    const float far_inverse = inverse * (1 + 16 * unit_roundoff);
+    constexpr std::size_t row = sizeof(WideNode::planes) / 6;
+    const std::size_t lower = 2 * row * axis;
+    const std::size_t turned = std::signbit(d) ? row : 0;
+    return {
+        inverse,
+        -o * inverse - outward,
+        far_inverse,
+        -o * far_inverse + outward,
+        lower + turned,
+        lower + (row - turned)
+    };
+}
+
+/// For a component that is too small beside the largest one, m; `size` is of all axes.
+HWY_NOINLINE inline PlaneMap
+map_flat_planes(float o, float d, float m, float size, std::size_t axis) {
+    PlaneMap map = map_planes(o, d, std::copysign(0x1p22F / m, d), 0, axis);
+    const float outward = 4 / m * size;
+    map.near_shift -= outward;
+    map.far_shift += outward;
+    return map;
+}
+
+} // namespace detail
+
+/// Fills `out`; false where float arithmetic could overflow or lose its bounds: coordinates beyond
+/// 2^60, or a direction whose largest component is outside [2^-30, 2^30]. `ray` must be valid.
+///
+/// The error of an edge function is the one derived for ExactKernel::surely_misses; with the ratio
+/// taken by a reciprocal it is at most e r (20 s + 50 e r), for s the largest sheared coordinate
+/// and r = s + the largest depth. Here both come from bounds instead of the vertices: a triangle
+/// that the ray hits has s <= its doubled extent, up to the rounding of s itself, 5 e z; z is
+/// bounded by the tree's vertices.
+///
+/// With u' the computed edge functions, B their error, L the triangle's extent along z and z_i its
+/// depths: the true depth z of the hit is within them, the computed one, z', leaves them by at most
+/// 2 B L / |sum u'|. sum u' (z_i - z') = 0, so that |z - z'| <= 3 B L / |sum u| where |sum u'| > 8
+/// B, and trivially at most L + 2 B L / |sum u'| elsewhere: 10 B L / |sum u'| in both cases, with L
+/// half the doubled extent. The rest is rounding, of the depths, the weights and two quotients.
+HWY_INLINE bool prepare(const Ray& ray, const WideBvh& tree, WideRay& out) {
+    constexpr float e = detail::unit_roundoff;
+    const std::array<float, 3> o{ray.origin.x, ray.origin.y, ray.origin.z};
+    const std::array<float, 3> d{ray.direction.x, ray.direction.y, ray.direction.z};
+    const std::array<float, 3> lo{tree.bounds.lo.x, tree.bounds.lo.y, tree.bounds.lo.z};
+    const std::array<float, 3> hi{tree.bounds.hi.x, tree.bounds.hi.y, tree.bounds.hi.z};
+    const auto larger = [](float a, float b) { return a > b ? a : b; };
+
+    // Without branches: no predictor knows where a ray goes.
+    const float across = larger(std::abs(d[0]), std::abs(d[1]));
+    const auto z = std::abs(d[2]) > across
+                       ? std::size_t{2}
+                       : static_cast<std::size_t>(std::abs(d[1]) > std::abs(d[0]));
+    const float m = larger(across, std::abs(d[2]));
+    std::array<float, 3> sizes; // NOLINT(*-member-init): written next
+    for (std::size_t k = 0; k < 3; ++k)
+        sizes[k] = larger(larger(std::abs(lo[k]), std::abs(hi[k])), std::abs(o[k]));
+    const float size = larger(larger(sizes[0], sizes[1]), sizes[2]);
+    if (!(size <= 0x1p60F && m >= 0x1p-30F && m <= 0x1p30F)) [[unlikely]]
+        return false;
+
+    std::array<float, 3> inverse; // NOLINT(*-member-init): written next
+    for (std::size_t k = 0; k < 3; ++k) {
+        inverse[k] = 1 / d[k];
+        if (std::abs(d[k]) <= e * m) [[unlikely]]
+            out.axes[k] = detail::map_flat_planes(o[k], d[k], m, size, k);
+        else
+            out.axes[k] = detail::map_planes(o[k], d[k], inverse[k], sizes[k], k);
+    }
+    out.t_min = ray.t_min + 0.0F;
+    out.t_max = ray.t_max;
+
+    constexpr std::size_t row = sizeof(TriangleBlock::vertices) / 9;
+    constexpr std::array<std::size_t, 5> turn{0, 1, 2, 0, 1};
+    const std::size_t x = turn[z + 1];
+    const std::size_t y = turn[z + 2];
+    out.x = row * x;
+    out.y = row * y;
+    out.z = row * z;
+    out.origin_x = o[x];
+    out.origin_y = o[y];
+    out.origin_z = o[z];
+    out.inverse_z = inverse[z];
+    out.shear_x = d[x] * inverse[z];
+    out.shear_y = d[y] * inverse[z];
+
+    constexpr float up = 1 + 0x1p-10F; // for the roundings of the bounds themselves
+    const float depth = larger(std::abs(lo[z] - o[z]), std::abs(hi[z] - o[z])) * up;
+    const float r = (depth + tree.largest_doubled_extent) * up;
+    const float slowness = std::abs(inverse[z]) * up;
+    out.edge_error_scale = 24 * e * up * r;
+    out.edge_error_shift = (e * r) * (e * up * (192 * depth + 64 * r)) + 0x1p-120F;
+    out.t_error_scale = 5 * slowness;
+    out.t_error_slope = 16 * e * depth * slowness;
+    out.t_error_shift = (32 * e * depth + 0x1p-120F) * slowness;
+    out.excluded = ray.excluded;
+    return true;
 }
 
 } // namespace raywise::simd

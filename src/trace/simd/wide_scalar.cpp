@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 
 namespace raywise::simd {
 namespace {
@@ -49,10 +50,10 @@ void traverse(const WideBvh& tree, const Ray& ray, Visit&& visit) {
 
 } // namespace
 
-Hit closest_scalar(const WideBvh& tree, const Ray& ray) {
-    Hit best;
+std::optional<Hit> closest_scalar(const WideBvh& tree, const Ray& ray) {
+    std::optional<Hit> best;
     traverse(tree, ray, [&](const Hit& hit, float& limit) {
-        if (is_closer(hit, best)) {
+        if (!best || is_closer(hit, *best)) {
             best = hit;
             limit = hit.t;
         }

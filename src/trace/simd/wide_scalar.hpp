@@ -5,10 +5,12 @@
 #include <raywise/core/function_ref.hpp>
 #include <raywise/geometry/ray.hpp>
 
+#include <optional>
+
 namespace raywise::simd {
 
-/// Exact in both modes. The trees are not empty and the rays valid; a miss of `closest` is Hit{}.
-[[nodiscard]] Hit closest_scalar(const WideBvh& tree, const Ray& ray);
+/// Exact in both modes. The trees are not empty and the rays valid.
+[[nodiscard]] std::optional<Hit> closest_scalar(const WideBvh& tree, const Ray& ray);
 [[nodiscard]] bool any_scalar(const WideBvh& tree, const Ray& ray);
 void all_scalar(const WideBvh& tree, const Ray& ray, FunctionRef<void(const Hit&)> visit);
 

@@ -44,7 +44,7 @@ public:
             ASSERT_FALSE(ended) << "the slots in use come first";
             const Aabb box = node.box(slot);
             if (slot > 0) {
-                ASSERT_LE(half_area(box), last) << "by falling measure";
+                ASSERT_GE(half_area(box), last) << "by rising measure";
             }
             last = half_area(box);
             if (around != nullptr) {
