@@ -8,6 +8,9 @@
 #include <raywise/core/error.hpp>
 #include <raywise/core/hash.hpp>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <memory>
 #include <span>
@@ -266,6 +269,18 @@ public:
                static_cast<double>(std::max<std::size_t>(1, rays_.count()));
     }
 
+    /// "pencil_grid", or all that differ: "pencil_grid, none".
+    [[nodiscard]] std::string structures() const {
+        std::vector<std::string_view> kinds;
+        for (const EmitterRays& of_emitter : rays_.emitters) {
+            if (of_emitter.area.empty()) continue;
+            const AreaId area = contest_.accelerator[of_emitter.area].id();
+            const std::string_view kind = name_of(contest_.accelerator.local(area).choice.kind);
+            if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) kinds.push_back(kind);
+        }
+        return kinds.empty() ? "whole accelerator" : fmt::format("{}", fmt::join(kinds, ", "));
+    }
+
     /// Steps of every few rays, and their number.
     [[nodiscard]] std::size_t count_steps(CountedQuery& counts) const {
         constexpr std::size_t every = 8;
@@ -335,6 +350,7 @@ public:
         common.count = rays_.count();
         common.ray_hash = hash_of(rays_);
         common.hit_share = race_.hit_share();
+        common.structure = race_.structures();
         common.brute_forced = check_oracle();
         CountedQuery counts;
         const auto counted =

@@ -67,6 +67,7 @@ RowColumns deciding_columns() {
         {"ratio", [](const BenchRow& row) { return timed(row, row.ratio); }},
         {"spread", [](const BenchRow& row) { return timed(row, row.spread); }},
         {"ratio_robust", [](const BenchRow& row) { return maybe(row.ratio_robust); }},
+        {"structure", [](const BenchRow& row) { return text(row.structure); }},
         {"mismatches", [](const BenchRow& row) { return count(row.mismatches); }},
         {"node_visits", [](const BenchRow& row) { return Cell(row.node_visits); }},
         {"triangle_tests", [](const BenchRow& row) { return Cell(row.triangle_tests); }},

@@ -38,6 +38,7 @@ struct BenchRow {
     double ratio = 0;  ///< ours over the peer's, median of pairs
     double spread = 0; ///< see SideBySide
     int rounds = 0;
+    std::string structure;                     ///< what ours traced through, of each emitter
     std::string peer_call;                     ///< what the peer was called with
     std::optional<double> ratio_robust = {};   ///< the same beside RTC_SCENE_FLAG_ROBUST
     std::optional<double> ratio_sorted = {};   ///< rays sorted beforehand, for both sides
