@@ -263,6 +263,10 @@ SpatialSplit SpatialBuild<M>::find_cut(
         const double root = static_cast<double>(root_mass_[static_cast<std::size_t>(which)]);
         const auto shared = static_cast<double>(static_cast<float>(metric(common)));
         if (common.is_empty() || !(shared > params_.least_overlap * root)) return best;
+        // Halves of a small node that share but a thin slice gain less than trying costs.
+        const int axis = split->is_left.axis;
+        if (count < small_node && common.size()[axis] < thin_slice * task.box.size()[axis])
+            return best;
     }
     const SpatialGrid grid(task.box, bins_for(count, params_.spatial_bins));
     SpatialBins bins(grid.part_count());
