@@ -4,6 +4,7 @@
 #include <raywise/core/error.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <tuple>
@@ -16,6 +17,9 @@ constexpr std::int32_t never = std::numeric_limits<std::int32_t>::max();
 
 /// Splitting pays when the children have less than this share of 16 times the references.
 constexpr double worthwhile_share = 0.5;
+
+/// Depths of a list are below this and what planes add to it.
+constexpr std::int32_t greatest_depth = 16383;
 
 std::size_t level_of(int shift) {
     return static_cast<std::size_t>((top_shift - shift) / split_bits);
@@ -177,7 +181,7 @@ void CellBuilder::add_list(
     });
     const std::int32_t base = references.front().least;
     int depth_shift = 0;
-    while (((references.back().least - base) >> depth_shift) > 255)
+    while (((references.back().least - base) >> depth_shift) > greatest_depth)
         ++depth_shift;
 
     ++statistics_.leaves;
@@ -192,25 +196,98 @@ void CellBuilder::add_list(
     std::byte* to = lists_.data() + at;
     std::memcpy(to, &head, sizeof head);
     to += sizeof head;
-    const auto byte = [](std::int32_t value, int places) {
+    const int places = shift - place_bits;
+    const auto place = [&](std::int32_t value) {
         return static_cast<std::byte>((value >> places) ^ 0x80);
     };
-    const int places = shift - place_bits;
     for (std::size_t first = 0; first < count; first += chunk_size) {
+        if (first > 0) {
+            const auto least =
+                static_cast<std::int16_t>((references[first].least - base) >> depth_shift);
+            std::memcpy(to, &least, sizeof least);
+            to += chunk_head_bytes;
+        }
         const std::size_t size = std::min(chunk_size, count - first);
         const std::size_t stride = padded(size);
         for (std::size_t i = 0; i < size; ++i) {
             const Reference& reference = references[first + i];
-            const Footprint& place = reference.place;
-            to[i] = byte(place.least_u - window.first_u, places);
-            to[stride + i] = byte(place.greatest_u - window.first_u, places);
-            to[2 * stride + i] = byte(place.least_v - window.first_v, places);
-            to[3 * stride + i] = byte(place.greatest_v - window.first_v, places);
-            to[4 * stride + i] = byte(reference.least - base, depth_shift);
-            std::memcpy(to + 5 * stride + 4 * i, &reference.prim, sizeof(PrimId));
+            const Footprint& bounds = reference.place;
+            to[i] = place(bounds.least_u - window.first_u);
+            to[stride + i] = place(bounds.greatest_u - window.first_u);
+            to[2 * stride + i] = place(bounds.least_v - window.first_v);
+            to[3 * stride + i] = place(bounds.greatest_v - window.first_v);
+            const LinearDepth depth = linear_depth(reference, window, base, depth_shift, places);
+            to[4 * stride + i] = static_cast<std::byte>(depth.slope_u);
+            to[5 * stride + i] = static_cast<std::byte>(depth.slope_v);
+            std::memcpy(to + 6 * stride + 2 * i, &depth.depth, sizeof depth.depth);
+            std::memcpy(to + 8 * stride + 4 * i, &reference.prim, sizeof(PrimId));
         }
         to += chunk_bytes(size);
     }
+}
+
+/// The plane of a parallel piece; of a radial one, whose depth -1 / key is a convex function of the
+/// place, the tangent in the middle of its bounds, which is nowhere beyond.
+CellBuilder::LinearDepth CellBuilder::linear_depth(
+    const Reference& reference,
+    const Window& window,
+    std::int32_t base,
+    int depth_shift,
+    int places
+) const {
+    const auto flat = static_cast<std::int16_t>((reference.least - base) >> depth_shift);
+    const LinearDepth constant{0, 0, static_cast<std::uint16_t>(flat)};
+    const Piece& piece = pieces_[reference.piece];
+    if (piece.is_part) return constant;
+    const auto plane = key_plane(piece);
+    if (!plane) return constant;
+    const Footprint& bounds = reference.place;
+    const double middle_u = 0.5 * (bounds.least_u + bounds.greatest_u + 1);
+    const double middle_v = 0.5 * (bounds.least_v + bounds.greatest_v + 1);
+    double middle = plane->at(middle_u, middle_v);
+    double scale = map_.depth_scale;
+    double error = 2;
+    if (is_radial_) {
+        if (!(middle < 0)) return constant;
+        const double z = -1 / middle;
+        error += z * 0x1p-19 * scale;
+        scale *= z * z;
+        middle = z;
+    }
+    const double unit = static_cast<double>(std::int64_t{1} << depth_shift);
+    // Depths of this list per place, and what is lost to whole numbers.
+    const double place = static_cast<double>(std::int64_t{1} << places);
+    const double slope_u = plane->slope_u * scale * place / unit;
+    const double slope_v = plane->slope_v * scale * place / unit;
+    const double whole_u = std::clamp(std::nearbyint(slope_u), -127.0, 127.0);
+    const double whole_v = std::clamp(std::nearbyint(slope_v), -127.0, 127.0);
+    const double at_u = (middle_u - window.first_u) / place;
+    const double at_v = (middle_v - window.first_v) / place;
+    // A query's place, taken in the middle of its 1/256, is off by half of that, by the margin, and
+    // by what the piece was snapped.
+    const double off = 0.5 + (piece.margin + 2) / place;
+    const double half_u = 0.5 * (bounds.greatest_u + 1 - bounds.least_u) / place + off;
+    const double half_v = 0.5 * (bounds.greatest_v + 1 - bounds.least_v) / place + off;
+    const double depth =
+        ((middle - map_.depth_first) * map_.depth_scale + shallowest - base - error) / unit;
+    const double slack = std::abs(whole_u) * off + std::abs(whole_v) * off +
+                         std::abs(slope_u - whole_u) * half_u +
+                         std::abs(slope_v - whole_v) * half_v +
+                         (std::abs(slope_u) * half_u + std::abs(slope_v) * half_v) * 0x1p-20 + 1;
+    const double at_middle = depth - slack;
+    // A plane that leaves the numbers, or says less than the least depth, is of no use.
+    if (!(at_middle > flat)) return constant;
+    const double lowest =
+        at_middle - std::abs(whole_u) * (half_u + 1) - std::abs(whole_v) * (half_v + 1);
+    if (!(lowest > -32000 && at_middle < 32000)) return constant;
+    const auto start = static_cast<std::int32_t>(
+        std::floor(at_middle - whole_u * (at_u - 0.5) - whole_v * (at_v - 0.5))
+    );
+    return {
+        static_cast<std::int8_t>(whole_u),
+        static_cast<std::int8_t>(whole_v),
+        static_cast<std::uint16_t>(start)
+    };
 }
 
 std::size_t CellBuilder::grow(std::size_t bytes) {

@@ -48,7 +48,20 @@ private:
         PrimId prim;
     };
 
+    /// A reference's depths as a list has them.
+    struct LinearDepth {
+        std::int8_t slope_u, slope_v;
+        std::uint16_t depth;
+    };
+
     Cell build(std::span<const std::uint32_t> pieces, const Window& window, int shift);
+    [[nodiscard]] LinearDepth linear_depth(
+        const Reference& reference,
+        const Window& window,
+        std::int32_t base,
+        int depth_shift,
+        int places
+    ) const;
     [[nodiscard]] std::int32_t cull(std::vector<Reference>& references);
     [[nodiscard]] bool
     split(const std::vector<Reference>& references, const Window& window, int shift, Cell& cell);

@@ -83,56 +83,113 @@ std::int32_t limited(double value, std::int32_t least, std::int32_t greatest) {
     );
 }
 
+struct Extent {
+    double least_u, greatest_u, least_v, greatest_v;
+    double least_key, greatest_key;
+};
+
+Extent extent(const Polygon& polygon) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    Extent e{infinity, -infinity, infinity, -infinity, infinity, -infinity};
+    for (std::size_t i = 0; i < polygon.count; ++i) {
+        const Corner& corner = polygon.corners[i];
+        e.least_u = std::min(e.least_u, corner.at[0]);
+        e.greatest_u = std::max(e.greatest_u, corner.at[0]);
+        e.least_v = std::min(e.least_v, corner.at[1]);
+        e.greatest_v = std::max(e.greatest_v, corner.at[1]);
+        e.least_key = std::min(e.least_key, corner.key);
+        e.greatest_key = std::max(e.greatest_key, corner.key);
+    }
+    return e;
+}
+
+constexpr Footprint nothing{1, 0, 1, 0, 0, 0, false};
+
 } // namespace
+
+std::optional<KeyPlane> key_plane(const Piece& piece) {
+    const double du1 = piece.u[1] - piece.u[0], dv1 = piece.v[1] - piece.v[0];
+    const double du2 = piece.u[2] - piece.u[0], dv2 = piece.v[2] - piece.v[0];
+    const double area = du1 * dv2 - dv1 * du2;
+    const double longest = std::max({std::abs(du1), std::abs(dv1), std::abs(du2), std::abs(dv2)});
+    if (!(std::abs(area) > longest * longest * 0x1p-16)) return std::nullopt;
+    const double dk1 = static_cast<double>(piece.key[1]) - static_cast<double>(piece.key[0]);
+    const double dk2 = static_cast<double>(piece.key[2]) - static_cast<double>(piece.key[0]);
+    return KeyPlane{
+        static_cast<double>(piece.u[0]),
+        static_cast<double>(piece.v[0]),
+        static_cast<double>(piece.key[0]),
+        (dk1 * dv2 - dk2 * dv1) / area,
+        (dk2 * du1 - dk1 * du2) / area
+    };
+}
 
 Footprint footprint(const Piece& piece, const Window& window) {
     const std::int32_t m = piece.margin;
+    const auto [low_u, high_u] = std::minmax({piece.u[0], piece.u[1], piece.u[2]});
+    const auto [low_v, high_v] = std::minmax({piece.v[0], piece.v[1], piece.v[2]});
+    const std::int32_t last_u = window.first_u + window.side - 1;
+    const std::int32_t last_v = window.first_v + window.side - 1;
+    if (low_u - m > last_u || high_u + m < window.first_u || low_v - m > last_v ||
+        high_v + m < window.first_v)
+        return nothing;
+    const auto [least_key, greatest_key] = std::minmax({piece.key[0], piece.key[1], piece.key[2]});
+    if (high_u - low_u <= window.side && high_v - low_v <= window.side)
+        return {
+            std::max(low_u - m, window.first_u),
+            std::min(high_u + m, last_u),
+            std::max(low_v - m, window.first_v),
+            std::min(high_v + m, last_v),
+            static_cast<double>(least_key),
+            static_cast<double>(greatest_key),
+            false
+        };
+
     const Bounds wide{
         std::int64_t{window.first_u} - m,
         std::int64_t{window.first_u} + window.side + m,
         std::int64_t{window.first_v} - m,
         std::int64_t{window.first_v} + window.side + m
     };
-    const auto [low_u, high_u] = std::minmax({piece.u[0], piece.u[1], piece.u[2]});
-    const auto [low_v, high_v] = std::minmax({piece.v[0], piece.v[1], piece.v[2]});
+    if (low_u < wide.least_u && high_u > wide.greatest_u && low_v < wide.least_v &&
+        high_v > wide.greatest_v && is_inside(piece, wide)) {
+        double least = static_cast<double>(least_key);
+        double greatest = static_cast<double>(greatest_key);
+        if (const auto plane = key_plane(piece)) {
+            const double middle =
+                plane->at(window.first_u + window.side * 0.5, window.first_v + window.side * 0.5);
+            const double change = (std::abs(plane->slope_u) + std::abs(plane->slope_v)) *
+                                      (window.side * 0.5 + m + 1) +
+                                  (greatest - least) * 0x1p-26;
+            least = std::max(least, middle - change);
+            greatest = std::min(greatest, middle + change);
+        }
+        return {window.first_u, last_u, window.first_v, last_v, least, greatest, true};
+    }
 
     Polygon polygon;
     for (std::size_t i = 0; i < 3; ++i)
-        polygon.add({{double(piece.u[i]), double(piece.v[i])}, double(piece.key[i])});
+        polygon.add(
+            {{static_cast<double>(piece.u[i]), static_cast<double>(piece.v[i])},
+             static_cast<double>(piece.key[i])}
+        );
     if (low_u < wide.least_u) cut<0>(polygon, static_cast<double>(wide.least_u), -1);
     if (high_u > wide.greatest_u) cut<0>(polygon, static_cast<double>(wide.greatest_u), 1);
     if (low_v < wide.least_v) cut<1>(polygon, static_cast<double>(wide.least_v), -1);
     if (high_v > wide.greatest_v) cut<1>(polygon, static_cast<double>(wide.greatest_v), 1);
-    if (polygon.count == 0) return {1, 0, 1, 0, 0, 0, false};
-
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    double least_u = infinity, greatest_u = -infinity;
-    double least_v = infinity, greatest_v = -infinity;
-    double least_key = infinity, greatest_key = -infinity;
-    for (std::size_t i = 0; i < polygon.count; ++i) {
-        const Corner& corner = polygon.corners[i];
-        least_u = std::min(least_u, corner.at[0]);
-        greatest_u = std::max(greatest_u, corner.at[0]);
-        least_v = std::min(least_v, corner.at[1]);
-        greatest_v = std::max(greatest_v, corner.at[1]);
-        least_key = std::min(least_key, corner.key);
-        greatest_key = std::max(greatest_key, corner.key);
-    }
-    const std::int32_t last_u = window.first_u + window.side - 1;
-    const std::int32_t last_v = window.first_v + window.side - 1;
-    if (least_u - m > last_u || greatest_u + m < window.first_u || least_v - m > last_v ||
-        greatest_v + m < window.first_v)
-        return {1, 0, 1, 0, 0, 0, false};
-    const bool may_fill = low_u < wide.least_u && high_u > wide.greatest_u &&
-                          low_v < wide.least_v && high_v > wide.greatest_v;
+    if (polygon.count == 0) return nothing;
+    const Extent e = extent(polygon);
+    if (e.least_u - m > last_u || e.greatest_u + m < window.first_u || e.least_v - m > last_v ||
+        e.greatest_v + m < window.first_v)
+        return nothing;
     return {
-        limited(std::floor(least_u) - m, window.first_u, last_u),
-        limited(std::ceil(greatest_u) + m, window.first_u, last_u),
-        limited(std::floor(least_v) - m, window.first_v, last_v),
-        limited(std::ceil(greatest_v) + m, window.first_v, last_v),
-        least_key,
-        greatest_key,
-        may_fill && is_inside(piece, wide)
+        limited(std::floor(e.least_u) - m, window.first_u, last_u),
+        limited(std::ceil(e.greatest_u) + m, window.first_u, last_u),
+        limited(std::floor(e.least_v) - m, window.first_v, last_v),
+        limited(std::ceil(e.greatest_v) + m, window.first_v, last_v),
+        e.least_key,
+        e.greatest_key,
+        false
     };
 }
 

@@ -4,6 +4,7 @@
 #include "pencil/piece.hpp"
 
 #include <cstdint>
+#include <optional>
 
 namespace raywise::pencil_detail {
 
@@ -15,8 +16,8 @@ struct Window {
 };
 
 /// Bounds of where queries of the window can meet the piece, margin included, limited to the
-/// window; empty when least_u > greatest_u. Keys are those of the piece within the window and its
-/// margin.
+/// window; empty when least_u > greatest_u. Keys are bounds of those of the piece within the window
+/// and its margin.
 struct Footprint {
     std::int32_t least_u, greatest_u;
     std::int32_t least_v, greatest_v;
@@ -24,6 +25,22 @@ struct Footprint {
     bool fills; ///< whether every ray of the window meets the inside of the piece
 };
 
+/// Bounds may be wider than need be for pieces smaller than the window.
 [[nodiscard]] Footprint footprint(const Piece& piece, const Window& window);
+
+/// The plane of a piece: key = key_at + slope_u * (u - at_u) + slope_v * (v - at_v), in units.
+struct KeyPlane {
+    double at_u, at_v;
+    double key_at;
+    double slope_u, slope_v;
+
+    [[nodiscard]] double at(double u, double v) const {
+        return key_at + slope_u * (u - at_u) + slope_v * (v - at_v);
+    }
+};
+
+/// Slopes are right to 2^-30, relatively to the steepest; nothing for pieces seen too much from
+/// their edge.
+[[nodiscard]] std::optional<KeyPlane> key_plane(const Piece& piece);
 
 } // namespace raywise::pencil_detail

@@ -39,10 +39,13 @@ struct Cell {
 };
 static_assert(sizeof(Cell) == 8);
 
-/// The head of a list; chunks of 16 references follow, the last one shorter, a multiple of 4. A
-/// chunk of n is: n bytes each of least and greatest u, least and greatest v, least depth; n ids.
-/// Bytes are places in the cell less 128, so that signed comparisons order them. References ascend
-/// by least depth.
+/// The head of a list; chunks of 16 references follow, the last one shorter, a multiple of 4.
+/// Before every chunk but the first stand its least depth and two bytes of nothing. A chunk of n
+/// is: n bytes each of least and greatest u, least and greatest v; n bytes each of slopes along u
+/// and v; n 16-bit depths; n ids. Places are in 1/256 of the cell, less 128, so that signed
+/// comparisons order them. Depths count 2^shift units from base; at place (u, v) reference i is no
+/// nearer than depth[i] + slope_u[i] * (u + 128) + slope_v[i] * (v + 128), modulo 2^16. References
+/// ascend by least depth.
 struct ListHead {
     std::int32_t base;  ///< least depth of all, in units
     std::uint32_t bits; ///< references, shift << 26, is_culled << 31
@@ -51,7 +54,7 @@ struct ListHead {
 
     [[nodiscard]] std::size_t count() const { return bits & 0x3FFFFFFU; }
 
-    /// A depth byte counts 2^shift units from base.
+    /// A depth counts 2^shift units from base.
     [[nodiscard]] int shift() const { return static_cast<int>((bits >> 26U) & 31U); }
 
     /// Whether references behind the cell's `cover` were dropped.
@@ -67,13 +70,19 @@ inline constexpr std::size_t chunk_size = 16;
 
 /// Bytes from one chunk of `count` references to the next.
 [[nodiscard]] constexpr std::size_t chunk_bytes(std::size_t count) {
-    return 9 * padded(count);
+    return 12 * padded(count);
 }
+
+/// Bytes before every chunk but the first.
+inline constexpr std::size_t chunk_head_bytes = 4;
 
 /// Bytes of a list, a multiple of 16.
 [[nodiscard]] constexpr std::size_t list_bytes(std::size_t count) {
-    const std::size_t whole = count / chunk_size * chunk_bytes(chunk_size);
-    return (sizeof(ListHead) + whole + chunk_bytes(count % chunk_size) + 15) / 16 * 16;
+    const std::size_t whole = (count - 1) / chunk_size;
+    const std::size_t bytes = sizeof(ListHead) +
+                              whole * (chunk_bytes(chunk_size) + chunk_head_bytes) +
+                              chunk_bytes(count - whole * chunk_size);
+    return (bytes + 15) / 16 * 16;
 }
 
 /// From the world to units. Parallel: u = x * scale - z * slope - offset for the coordinate x along

@@ -109,7 +109,7 @@ HWY_INLINE Spot locate(const Grid& grid, const Ray& ray) {
     line.shear_v = ray.direction[map.axis_v] / direction_z;
     line.least = ray.t_min * speed;
     line.greatest = t_max * speed;
-    line.slack = 0x1p-120F + speed * 0x1p-148F;
+    line.slack = 0x1p-120F + speed * 0x1p-100F;
     line.sign = direction_z < 0 ? -1.0F : 1.0F;
     line.doubt = grid.doubt;
     line.at_u = static_cast<std::size_t>(3 * map.axis_u);
@@ -179,47 +179,70 @@ HWY_INLINE void prefetch(const void* address) {
 #endif
 }
 
+/// A query's place in a cell, less 128, and its depth as the list has it.
+struct Probe {
+    std::int8_t u, v;
+    std::int16_t depth;
+};
+
 #if HWY_TARGET == HWY_SCALAR
 
 /// Bit i is set when reference i of the chunk may be met.
-inline unsigned
-touched(const std::byte* chunk, std::size_t size, std::int8_t u, std::int8_t v, std::int8_t depth) {
+inline unsigned touched(const std::byte* chunk, std::size_t size, const Probe& probe) {
     const auto* at = reinterpret_cast<const std::int8_t*>(chunk);
     const std::size_t stride = padded(size);
     unsigned bits = 0;
-    for (std::size_t i = 0; i < size; ++i)
-        if (at[i] <= u && at[stride + i] >= u && at[2 * stride + i] <= v &&
-            at[3 * stride + i] >= v && at[4 * stride + i] <= depth)
+    for (std::size_t i = 0; i < size; ++i) {
+        std::uint16_t depth = 0;
+        std::memcpy(&depth, chunk + 6 * stride + 2 * i, sizeof depth);
+        const int here =
+            depth + at[4 * stride + i] * (probe.u + 128) + at[5 * stride + i] * (probe.v + 128);
+        if (at[i] <= probe.u && at[stride + i] >= probe.u && at[2 * stride + i] <= probe.v &&
+            at[3 * stride + i] >= probe.v && static_cast<std::int16_t>(here) <= probe.depth)
             bits |= 1U << i;
+    }
     return bits;
 }
 
 #else
 
 using Bytes = hn::FixedTag<std::int8_t, chunk_size>;
+using Words = hn::CappedTag<std::int16_t, chunk_size>;
 
 /// Bit i is set when reference i of the chunk may be met.
-HWY_INLINE unsigned
-touched(const std::byte* chunk, std::size_t size, std::int8_t u, std::int8_t v, std::int8_t depth) {
+HWY_INLINE unsigned touched(const std::byte* chunk, std::size_t size, const Probe& probe) {
     const Bytes d;
     const std::size_t stride = padded(size);
-    const auto load = [&](std::size_t row) HWY_ATTR {
-        return hn::LoadU(d, reinterpret_cast<const std::int8_t*>(chunk + row * stride));
-    };
-    const auto at_u = hn::Set(d, u);
-    const auto at_v = hn::Set(d, v);
+    const auto* const at = reinterpret_cast<const std::int8_t*>(chunk);
+    const auto u = hn::Set(d, probe.u);
+    const auto v = hn::Set(d, probe.v);
     const auto is_outside = hn::Or(
-        hn::Or(
-            hn::Or(hn::Gt(load(0), at_u), hn::Lt(load(1), at_u)),
-            hn::Or(hn::Gt(load(2), at_v), hn::Lt(load(3), at_v))
-        ),
-        hn::Gt(load(4), hn::Set(d, depth))
+        hn::Or(hn::Gt(hn::LoadU(d, at), u), hn::Lt(hn::LoadU(d, at + stride), u)),
+        hn::Or(hn::Gt(hn::LoadU(d, at + 2 * stride), v), hn::Lt(hn::LoadU(d, at + 3 * stride), v))
     );
     std::uint8_t bytes[8];
     hn::StoreMaskBits(d, is_outside, bytes);
-    std::uint16_t bits = 0;
-    std::memcpy(&bits, bytes, sizeof bits);
-    return ~unsigned{bits} & ((1U << size) - 1);
+    std::uint16_t outside = 0;
+    std::memcpy(&outside, bytes, sizeof outside);
+
+    const Words w;
+    const hn::Rebind<std::int8_t, Words> narrow;
+    const auto u_wide = hn::Set(w, static_cast<std::int16_t>(probe.u + 128));
+    const auto v_wide = hn::Set(w, static_cast<std::int16_t>(probe.v + 128));
+    std::uint32_t beyond = 0;
+    for (std::size_t i = 0; i < chunk_size; i += hn::Lanes(w)) {
+        const auto slope_u = hn::PromoteTo(w, hn::LoadU(narrow, at + 4 * stride + i));
+        const auto slope_v = hn::PromoteTo(w, hn::LoadU(narrow, at + 5 * stride + i));
+        const auto depth =
+            hn::LoadU(w, reinterpret_cast<const std::int16_t*>(at + 6 * stride + 2 * i));
+        const auto here =
+            hn::Add(depth, hn::Add(hn::Mul(slope_u, u_wide), hn::Mul(slope_v, v_wide)));
+        hn::StoreMaskBits(w, hn::Gt(here, hn::Set(w, probe.depth)), bytes);
+        std::uint16_t part = 0;
+        std::memcpy(&part, bytes, hn::Lanes(w) / 8);
+        beyond |= std::uint32_t{part} << i;
+    }
+    return ~(outside | beyond) & ((1U << size) - 1);
 }
 
 #endif
@@ -236,17 +259,19 @@ scan(const Grid& grid, const Leaf& leaf, const std::int32_t& deepest, Count coun
     std::memcpy(&head, at, sizeof head);
     at += sizeof head;
     const int places = leaf.shift - place_bits;
-    const auto byte = [](std::int32_t value) { return static_cast<std::int8_t>(value ^ 0x80); };
-    const std::int8_t u = byte((leaf.u >> places) & 255);
-    const std::int8_t v = byte((leaf.v >> places) & 255);
+    const auto place = [&](std::int32_t value) {
+        return static_cast<std::int8_t>(((value >> places) & 255) - 128);
+    };
+    Probe probe{place(leaf.u), place(leaf.v), 0};
     std::size_t left = head.count();
     count.list(left);
     for (;;) {
         if (deepest < head.base) return false;
-        const std::int8_t depth = byte(std::min((deepest - head.base) >> head.shift(), 255));
+        probe.depth =
+            static_cast<std::int16_t>(std::min((deepest - head.base) >> head.shift(), 32767));
         const std::size_t size = std::min(left, chunk_size);
-        const std::byte* ids = at + 5 * padded(size);
-        for (unsigned bits = touched(at, size, u, v, depth); bits != 0; bits &= bits - 1) {
+        const std::byte* ids = at + 8 * padded(size);
+        for (unsigned bits = touched(at, size, probe); bits != 0; bits &= bits - 1) {
             PrimId id;
             std::memcpy(
                 &id, ids + sizeof id * static_cast<std::size_t>(std::countr_zero(bits)), sizeof id
@@ -256,8 +281,10 @@ scan(const Grid& grid, const Leaf& leaf, const std::int32_t& deepest, Count coun
         left -= size;
         if (left == 0) return false;
         at += chunk_bytes(chunk_size);
-        if (static_cast<std::int8_t>(at[4 * padded(std::min(left, chunk_size))]) > depth)
-            return false;
+        std::int16_t least = 0;
+        std::memcpy(&least, at, sizeof least);
+        if (least > probe.depth) return false;
+        at += chunk_head_bytes;
     }
 }
 
