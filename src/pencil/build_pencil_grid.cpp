@@ -117,6 +117,9 @@ RawFaces raw_faces(PencilGrid::Data& data, const Records& records, const Executo
         map.slope_u = d[map.axis_u] / d[axis];
         map.slope_v = d[map.axis_v] / d[axis];
         map.reach = 256 * records.greatest;
+        map.shear_u = direction[map.axis_u] / direction[axis];
+        map.shear_v = direction[map.axis_v] / direction[axis];
+        map.speed = std::abs(direction[axis]);
         // Without triangles nothing is too far away.
         if (records.ids.empty()) map.reach = std::numeric_limits<double>::infinity();
         data.doubt = doubt_of(records.greatest);

@@ -268,8 +268,7 @@ CellBuilder::LinearDepth CellBuilder::linear_depth(
     const double off = 0.5 + (piece.margin + 2) / place;
     const double half_u = 0.5 * (bounds.greatest_u + 1 - bounds.least_u) / place + off;
     const double half_v = 0.5 * (bounds.greatest_v + 1 - bounds.least_v) / place + off;
-    const double depth =
-        ((middle - map_.depth_first) * map_.depth_scale + shallowest - base - error) / unit;
+    const double depth = (depth_units_of(map_, middle) - base - error) / unit;
     const double slack = std::abs(whole_u) * off + std::abs(whole_v) * off +
                          std::abs(slope_u - whole_u) * half_u +
                          std::abs(slope_v - whole_v) * half_v +

@@ -34,11 +34,19 @@ inline Place radial_place(const FaceMap& map, double x_u, double x_v, double x_a
     };
 }
 
-/// Monotone in z. NaN is `deepest`.
-inline std::int32_t depth_units(const FaceMap& map, double z) {
-    const double units = (z - map.depth_first) * map.depth_scale + shallowest;
+/// Unclamped. Monotone in z.
+inline double depth_units_of(const FaceMap& map, double z) {
+    return z * map.depth_scale + map.depth_offset;
+}
+
+/// Monotone. NaN is `deepest`.
+inline std::int32_t limited_depth(double units) {
     const double limited = units < deepest ? units : double{deepest};
     return static_cast<std::int32_t>(limited > 0 ? limited : 0.0);
+}
+
+inline std::int32_t depth_units(const FaceMap& map, double z) {
+    return limited_depth(depth_units_of(map, z));
 }
 
 } // namespace raywise::pencil_detail

@@ -87,15 +87,17 @@ inline constexpr std::size_t chunk_head_bytes = 4;
 
 /// From the world to units. Parallel: u = x * scale - z * slope - offset for the coordinate x along
 /// the u axis and z along the depth axis; radial: u = x / z * scale - offset for coordinates from
-/// the apex, z > 0. Depth: (z - depth_first) * depth_scale + shallowest.
+/// the apex, z > 0. Depth: z * depth_scale + depth_offset.
 struct FaceMap {
     double scale_u = 0, slope_u = 0, offset_u = 0;
     double scale_v = 0, slope_v = 0, offset_v = 0;
-    double depth_first = 0, depth_scale = 0;
+    double depth_scale = 0, depth_offset = 0;
     double size_u = 0, size_v = 0; ///< units; what is outside meets nothing
     double sign = 1;               ///< depth is the coordinate along the axis times this
     double reach = 0;              ///< greatest depth that a query may begin or end at
     int axis = 0, axis_u = 1, axis_v = 2;
+    float shear_u = 0, shear_v = 0; ///< parallel: direction u / z and v / z
+    float speed = 0;                ///< parallel: |direction z|
 };
 
 struct Face {

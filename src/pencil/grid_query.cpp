@@ -6,6 +6,7 @@
 #include <raywise/geometry/ray_triangle.hpp>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -67,50 +68,87 @@ struct Spot {
     Line line;
 };
 
+HWY_INLINE float component(const Vec3& v, int axis) {
+    float x = 0;
+    std::memcpy(
+        &x,
+        reinterpret_cast<const std::byte*>(&v) + static_cast<std::size_t>(axis) * sizeof x,
+        sizeof x
+    );
+    return x;
+}
+
+/// The face of a direction from the apex, without branches: lamps look everywhere.
+HWY_INLINE std::size_t face_of(const std::array<double, 3>& seen) {
+    const double x = std::abs(seen[0]);
+    const double y = std::abs(seen[1]);
+    const double z = std::abs(seen[2]);
+    const auto is_x = static_cast<std::size_t>(x >= y) & static_cast<std::size_t>(x >= z);
+    const std::size_t axis = (1 - is_x) * (2 - static_cast<std::size_t>(y >= z));
+    return 2 * axis + static_cast<std::size_t>(seen[axis] < 0);
+}
+
+/// limited_depth without branches.
+HWY_INLINE std::int32_t limited(double units) {
+    const hn::CappedTag<double, 1> d;
+    return static_cast<std::int32_t>(hn::GetLane(
+        hn::Max(hn::Min(hn::Set(d, units), hn::Set(d, static_cast<double>(deepest))), hn::Zero(d))
+    ));
+}
+
 template <Heading heading>
 HWY_INLINE Spot locate(const Grid& grid, const Ray& ray) {
     Spot spot;
     Place place;
+    Line& line = spot.line;
+    float speed = 0;
     if (grid.pencil.kind() == Pencil::Kind::parallel) {
         spot.face = grid.faces.data();
         const FaceMap& map = spot.face->map;
+        line.origin_u = component(ray.origin, map.axis_u);
+        line.origin_v = component(ray.origin, map.axis_v);
+        line.origin_z = component(ray.origin, map.axis);
         place = parallel_place(
             map,
-            static_cast<double>(ray.origin[map.axis_u]),
-            static_cast<double>(ray.origin[map.axis_v]),
-            static_cast<double>(ray.origin[map.axis])
+            static_cast<double>(line.origin_u),
+            static_cast<double>(line.origin_v),
+            static_cast<double>(line.origin_z)
         );
         spot.is_known = std::abs(place.z) <= map.reach;
+        line.shear_u = map.shear_u;
+        line.shear_v = map.shear_v;
+        speed = map.speed;
     } else {
-        const Vec3d seen = heading == Heading::to_emitter ? to_double(ray.origin) - grid.apex
+        const Vec3d rays = heading == Heading::to_emitter ? to_double(ray.origin) - grid.apex
                                                           : to_double(ray.direction);
-        const int axis = dominant_axis(seen);
-        const std::size_t face = 2 * static_cast<std::size_t>(axis) + (seen[axis] < 0 ? 1U : 0U);
-        spot.face = &grid.faces[face];
+        const std::array<double, 3> seen{rays.x, rays.y, rays.z};
+        spot.face = &grid.faces[face_of(seen)];
         const FaceMap& map = spot.face->map;
-        place = radial_place(map, seen[map.axis_u], seen[map.axis_v], seen[axis]);
+        line.origin_u = component(ray.origin, map.axis_u);
+        line.origin_v = component(ray.origin, map.axis_v);
+        line.origin_z = component(ray.origin, map.axis);
+        const auto seen_along = [&](int axis) { return seen[static_cast<std::size_t>(axis)]; };
+        place =
+            radial_place(map, seen_along(map.axis_u), seen_along(map.axis_v), seen_along(map.axis));
         if constexpr (heading == Heading::from_emitter) place.z = 0;
         spot.is_known = place.z <= map.reach;
+        const float direction_z = component(ray.direction, map.axis);
+        line.shear_u = component(ray.direction, map.axis_u) / direction_z;
+        line.shear_v = component(ray.direction, map.axis_v) / direction_z;
+        speed = std::abs(direction_z);
     }
     const FaceMap& map = spot.face->map;
     spot.u = place.u;
     spot.v = place.v;
     spot.origin_z = place.z;
 
-    const float direction_z = ray.direction[map.axis];
-    const float speed = std::abs(direction_z);
     // Hits at an infinite t do not count.
     const float t_max = std::min(ray.t_max, std::numeric_limits<float>::max());
-    Line& line = spot.line;
-    line.origin_u = ray.origin[map.axis_u];
-    line.origin_v = ray.origin[map.axis_v];
-    line.origin_z = ray.origin[map.axis];
-    line.shear_u = ray.direction[map.axis_u] / direction_z;
-    line.shear_v = ray.direction[map.axis_v] / direction_z;
     line.least = ray.t_min * speed;
     line.greatest = t_max * speed;
+    // t is rounded to a multiple of 2^-149; but a denormal factor would cost a hundred cycles.
     line.slack = 0x1p-120F + speed * 0x1p-100F;
-    line.sign = direction_z < 0 ? -1.0F : 1.0F;
+    line.sign = static_cast<float>(heading == Heading::to_emitter ? -map.sign : map.sign);
     line.doubt = grid.doubt;
     line.at_u = static_cast<std::size_t>(3 * map.axis_u);
     line.at_v = static_cast<std::size_t>(3 * map.axis_v);
@@ -118,18 +156,20 @@ HWY_INLINE Spot locate(const Grid& grid, const Ray& ray) {
 
     constexpr double less = 1 - 0x1p-21;
     constexpr double more = 1 + 0x1p-21;
-    const double start = static_cast<double>(ray.t_min) * static_cast<double>(speed);
-    const double end = static_cast<double>(t_max) * static_cast<double>(speed);
-    const auto slack = static_cast<double>(line.slack);
     constexpr std::int32_t rounding = 4;
+    const double units = depth_units_of(map, place.z);
+    const double scale = static_cast<double>(speed) * map.depth_scale;
+    const double start = static_cast<double>(ray.t_min) * scale;
+    const double end = static_cast<double>(t_max) * scale;
+    const double slack = static_cast<double>(line.slack) * map.depth_scale;
     if constexpr (heading == Heading::to_emitter) {
-        spot.deepest = depth_units(map, place.z - start * less + slack);
-        spot.sure = depth_units(map, place.z - start * more - slack) - rounding;
-        spot.is_whole = depth_units(map, place.z - end * less + slack) < shallowest - rounding;
+        spot.deepest = limited(units - start * less + slack);
+        spot.sure = limited(units - start * more - slack) - rounding;
+        spot.is_whole = units - end * less + slack < shallowest - rounding;
     } else {
-        spot.deepest = depth_units(map, place.z + end * more + slack);
-        spot.sure = depth_units(map, place.z + end * less - slack) - rounding;
-        spot.is_whole = depth_units(map, place.z + start * more + slack) < shallowest - rounding;
+        spot.deepest = limited(units + end * more + slack);
+        spot.sure = limited(units + end * less - slack) - rounding;
+        spot.is_whole = units + start * more + slack < shallowest - rounding;
     }
     return spot;
 }
