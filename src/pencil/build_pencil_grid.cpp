@@ -120,6 +120,9 @@ RawFaces raw_faces(PencilGrid::Data& data, const Records& records, const Executo
         map.shear_u = direction[map.axis_u] / direction[axis];
         map.shear_v = direction[map.axis_v] / direction[axis];
         map.speed = std::abs(direction[axis]);
+        // NaN: no t does, as an infinite one would be no hit.
+        const float whole = 1.01F * static_cast<float>(2 * map.reach) / map.speed;
+        map.whole_t = std::isfinite(whole) ? whole : std::numeric_limits<float>::quiet_NaN();
         // Without triangles nothing is too far away.
         if (records.ids.empty()) map.reach = std::numeric_limits<double>::infinity();
         data.doubt = doubt_of(records.greatest);

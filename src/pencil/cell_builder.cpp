@@ -216,11 +216,11 @@ void CellBuilder::add_list(
             to[stride + i] = place(bounds.greatest_u - window.first_u);
             to[2 * stride + i] = place(bounds.least_v - window.first_v);
             to[3 * stride + i] = place(bounds.greatest_v - window.first_v);
-            const LinearDepth depth = linear_depth(reference, window, base, depth_shift, places);
-            to[4 * stride + i] = static_cast<std::byte>(depth.slope_u);
-            to[5 * stride + i] = static_cast<std::byte>(depth.slope_v);
-            std::memcpy(to + 6 * stride + 2 * i, &depth.depth, sizeof depth.depth);
-            std::memcpy(to + 8 * stride + 4 * i, &reference.prim, sizeof(PrimId));
+            const LinearDepth depth = linear_depth(reference, window, base, depth_shift);
+            std::memcpy(to + 4 * stride + 2 * i, &depth.slope_u, 2);
+            std::memcpy(to + 6 * stride + 2 * i, &depth.slope_v, 2);
+            std::memcpy(to + 8 * stride + 2 * i, &depth.depth, 2);
+            std::memcpy(to + 10 * stride + 4 * i, &reference.prim, sizeof(PrimId));
         }
         to += chunk_bytes(size);
     }
@@ -232,8 +232,7 @@ CellBuilder::LinearDepth CellBuilder::linear_depth(
     const Reference& reference,
     const Window& window,
     std::int32_t base,
-    int depth_shift,
-    int places
+    int depth_shift
 ) const {
     const auto flat = static_cast<std::int16_t>((reference.least - base) >> depth_shift);
     const LinearDepth constant{0, 0, static_cast<std::uint16_t>(flat)};
@@ -255,36 +254,38 @@ CellBuilder::LinearDepth CellBuilder::linear_depth(
         middle = z;
     }
     const double unit = static_cast<double>(std::int64_t{1} << depth_shift);
-    // Depths of this list per place, and what is lost to whole numbers.
-    const double place = static_cast<double>(std::int64_t{1} << places);
-    const double slope_u = plane->slope_u * scale * place / unit;
-    const double slope_v = plane->slope_v * scale * place / unit;
-    const double whole_u = std::clamp(std::nearbyint(slope_u), -127.0, 127.0);
-    const double whole_v = std::clamp(std::nearbyint(slope_v), -127.0, 127.0);
-    const double at_u = (middle_u - window.first_u) / place;
-    const double at_v = (middle_v - window.first_v) / place;
-    // A query's place, taken in the middle of its 1/256, is off by half of that, by the margin, and
-    // by what the piece was snapped.
-    const double off = 0.5 + (piece.margin + 2) / place;
-    const double half_u = 0.5 * (bounds.greatest_u + 1 - bounds.least_u) / place + off;
-    const double half_v = 0.5 * (bounds.greatest_v + 1 - bounds.least_v) / place + off;
+    const double side = window.side;
+    // The list's depths over the cell.
+    const double slope_u = plane->slope_u * scale * side / unit;
+    const double slope_v = plane->slope_v * scale * side / unit;
+    const double whole_u = std::nearbyint(slope_u);
+    const double whole_v = std::nearbyint(slope_v);
+    if (!(std::abs(whole_u) < 32000 && std::abs(whole_v) < 32000)) return constant;
+    const double at_u = (middle_u - window.first_u) / side;
+    const double at_v = (middle_v - window.first_v) / side;
+    // A query's place is rounded down to 2^-15 and to units, and off by the margin and by what the
+    // piece was snapped.
+    const double off = 0x1p-15 + (piece.margin + 3) / side;
+    const double half_u = 0.5 * (bounds.greatest_u + 1 - bounds.least_u) / side + off;
+    const double half_v = 0.5 * (bounds.greatest_v + 1 - bounds.least_v) / side + off;
     const double depth = (depth_units_of(map_, middle) - base - error) / unit;
-    const double slack = std::abs(whole_u) * off + std::abs(whole_v) * off +
-                         std::abs(slope_u - whole_u) * half_u +
-                         std::abs(slope_v - whole_v) * half_v +
-                         (std::abs(slope_u) * half_u + std::abs(slope_v) * half_v) * 0x1p-20 + 1;
+    // Products are rounded, to half a depth each, and so is the start.
+    constexpr double rounding = 2;
+    const double slack =
+        (std::abs(whole_u) + std::abs(whole_v)) * off + std::abs(slope_u - whole_u) * half_u +
+        std::abs(slope_v - whole_v) * half_v +
+        (std::abs(slope_u) * half_u + std::abs(slope_v) * half_v) * 0x1p-20 + rounding;
     const double at_middle = depth - slack;
     // A plane that leaves the numbers, or says less than the least depth, is of no use.
     if (!(at_middle > flat)) return constant;
     const double lowest =
-        at_middle - std::abs(whole_u) * (half_u + 1) - std::abs(whole_v) * (half_v + 1);
+        at_middle - std::abs(whole_u) * half_u - std::abs(whole_v) * half_v - rounding;
     if (!(lowest > -32000 && at_middle < 32000)) return constant;
-    const auto start = static_cast<std::int32_t>(
-        std::floor(at_middle - whole_u * (at_u - 0.5) - whole_v * (at_v - 0.5))
-    );
+    const auto start =
+        static_cast<std::int32_t>(std::floor(at_middle - whole_u * at_u - whole_v * at_v));
     return {
-        static_cast<std::int8_t>(whole_u),
-        static_cast<std::int8_t>(whole_v),
+        static_cast<std::int16_t>(whole_u),
+        static_cast<std::int16_t>(whole_v),
         static_cast<std::uint16_t>(start)
     };
 }

@@ -50,7 +50,7 @@ private:
 
     /// A reference's depths as a list has them.
     struct LinearDepth {
-        std::int8_t slope_u, slope_v;
+        std::int16_t slope_u, slope_v;
         std::uint16_t depth;
     };
 
@@ -59,8 +59,7 @@ private:
         const Reference& reference,
         const Window& window,
         std::int32_t base,
-        int depth_shift,
-        int places
+        int depth_shift
     ) const;
     [[nodiscard]] std::int32_t cull(std::vector<Reference>& references);
     [[nodiscard]] bool

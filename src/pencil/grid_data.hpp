@@ -39,13 +39,13 @@ struct Cell {
 };
 static_assert(sizeof(Cell) == 8);
 
-/// The head of a list; chunks of 16 references follow, the last one shorter, a multiple of 4.
+/// The head of a list; chunks of 32 references follow, the last one shorter, a multiple of 4.
 /// Before every chunk but the first stand its least depth and two bytes of nothing. A chunk of n
-/// is: n bytes each of least and greatest u, least and greatest v; n bytes each of slopes along u
-/// and v; n 16-bit depths; n ids. Places are in 1/256 of the cell, less 128, so that signed
-/// comparisons order them. Depths count 2^shift units from base; at place (u, v) reference i is no
-/// nearer than depth[i] + slope_u[i] * (u + 128) + slope_v[i] * (v + 128), modulo 2^16. References
-/// ascend by least depth.
+/// is: n bytes each of least and greatest u, least and greatest v, in 1/256 of the cell less 128,
+/// so that signed comparisons order them; n 16-bit numbers each of slopes along u and v and of
+/// depths; n ids. Depths count 2^shift units from base; at the place (u, v), in 2^-15 of the cell,
+/// reference i is no nearer than depth[i] + slope_u[i] * u + slope_v[i] * v, products times 2^-15
+/// and rounded, sums modulo 2^16. References ascend by least depth.
 struct ListHead {
     std::int32_t base;  ///< least depth of all, in units
     std::uint32_t bits; ///< references, shift << 26, is_culled << 31
@@ -62,7 +62,7 @@ struct ListHead {
 };
 static_assert(sizeof(ListHead) == 8);
 
-inline constexpr std::size_t chunk_size = 16;
+inline constexpr std::size_t chunk_size = 32;
 
 [[nodiscard]] constexpr std::size_t padded(std::size_t count) {
     return (count + 3) / 4 * 4;
@@ -70,7 +70,7 @@ inline constexpr std::size_t chunk_size = 16;
 
 /// Bytes from one chunk of `count` references to the next.
 [[nodiscard]] constexpr std::size_t chunk_bytes(std::size_t count) {
-    return 12 * padded(count);
+    return 14 * padded(count);
 }
 
 /// Bytes before every chunk but the first.
@@ -98,6 +98,7 @@ struct FaceMap {
     int axis = 0, axis_u = 1, axis_v = 2;
     float shear_u = 0, shear_v = 0; ///< parallel: direction u / z and v / z
     float speed = 0;                ///< parallel: |direction z|
+    float whole_t = 1; ///< a ray toward the emitter with such a t_max passes all geometry
 };
 
 struct Face {
@@ -113,7 +114,7 @@ struct Kernels;
 inline constexpr std::size_t record_floats = 9;
 
 /// Bytes that may be read beyond the last list or record.
-inline constexpr std::size_t slack_bytes = 64;
+inline constexpr std::size_t slack_bytes = 128;
 
 } // namespace raywise::pencil_detail
 

@@ -154,22 +154,22 @@ HWY_INLINE Spot locate(const Grid& grid, const Ray& ray) {
     line.at_v = static_cast<std::size_t>(3 * map.axis_v);
     line.at_z = static_cast<std::size_t>(3 * map.axis);
 
-    constexpr double less = 1 - 0x1p-21;
-    constexpr double more = 1 + 0x1p-21;
+    constexpr double under = 1 - 0x1p-21;
+    constexpr double over = 1 + 0x1p-21;
     constexpr std::int32_t rounding = 4;
     const double units = depth_units_of(map, place.z);
     const double scale = static_cast<double>(speed) * map.depth_scale;
     const double start = static_cast<double>(ray.t_min) * scale;
-    const double end = static_cast<double>(t_max) * scale;
     const double slack = static_cast<double>(line.slack) * map.depth_scale;
     if constexpr (heading == Heading::to_emitter) {
-        spot.deepest = limited(units - start * less + slack);
-        spot.sure = limited(units - start * more - slack) - rounding;
-        spot.is_whole = units - end * less + slack < shallowest - rounding;
+        spot.deepest = limited(units - start * under + slack);
+        spot.sure = limited(units - start * over - slack) - rounding;
+        spot.is_whole = ray.t_max >= map.whole_t;
     } else {
-        spot.deepest = limited(units + end * more + slack);
-        spot.sure = limited(units + end * less - slack) - rounding;
-        spot.is_whole = units + start * more + slack < shallowest - rounding;
+        const double end = static_cast<double>(t_max) * scale;
+        spot.deepest = limited(units + end * over + slack);
+        spot.sure = limited(units + end * under - slack) - rounding;
+        spot.is_whole = units + start * over + slack < shallowest - rounding;
     }
     return spot;
 }
@@ -219,24 +219,29 @@ HWY_INLINE void prefetch(const void* address) {
 #endif
 }
 
-/// A query's place in a cell, less 128, and its depth as the list has it.
+/// A query's place in a cell and its depth, as the list has them.
 struct Probe {
-    std::int8_t u, v;
+    std::int8_t u, v;            ///< in 1/256, less 128
+    std::int16_t u_fine, v_fine; ///< in 2^-15
     std::int16_t depth;
 };
 
 #if HWY_TARGET == HWY_SCALAR
 
 /// Bit i is set when reference i of the chunk may be met.
-inline unsigned touched(const std::byte* chunk, std::size_t size, const Probe& probe) {
+inline std::uint32_t touched(const std::byte* chunk, std::size_t size, const Probe& probe) {
     const auto* at = reinterpret_cast<const std::int8_t*>(chunk);
     const std::size_t stride = padded(size);
-    unsigned bits = 0;
+    std::uint32_t bits = 0;
     for (std::size_t i = 0; i < size; ++i) {
-        std::uint16_t depth = 0;
-        std::memcpy(&depth, chunk + 6 * stride + 2 * i, sizeof depth);
+        const auto number = [&](std::size_t row) {
+            std::int16_t x = 0;
+            std::memcpy(&x, chunk + row * stride + 2 * i, sizeof x);
+            return int{x};
+        };
+        const auto product = [](int slope, int place) { return (slope * place + 0x4000) >> 15; };
         const int here =
-            depth + at[4 * stride + i] * (probe.u + 128) + at[5 * stride + i] * (probe.v + 128);
+            number(8) + product(number(4), probe.u_fine) + product(number(6), probe.v_fine);
         if (at[i] <= probe.u && at[stride + i] >= probe.u && at[2 * stride + i] <= probe.v &&
             at[3 * stride + i] >= probe.v && static_cast<std::int16_t>(here) <= probe.depth)
             bits |= 1U << i;
@@ -246,63 +251,73 @@ inline unsigned touched(const std::byte* chunk, std::size_t size, const Probe& p
 
 #else
 
-using Bytes = hn::FixedTag<std::int8_t, chunk_size>;
+using Bytes = hn::CappedTag<std::int8_t, chunk_size>;
 using Words = hn::CappedTag<std::int16_t, chunk_size>;
 
 /// Bit i is set when reference i of the chunk may be met.
-HWY_INLINE unsigned touched(const std::byte* chunk, std::size_t size, const Probe& probe) {
-    const Bytes d;
+HWY_INLINE std::uint32_t touched(const std::byte* chunk, std::size_t size, const Probe& probe) {
     const std::size_t stride = padded(size);
     const auto* const at = reinterpret_cast<const std::int8_t*>(chunk);
+    std::uint8_t bytes[8];
+    const auto add = [&](std::uint32_t& bits, std::size_t lanes, std::size_t first) HWY_ATTR {
+        std::uint32_t part = 0;
+        std::memcpy(&part, bytes, lanes / 8);
+        bits |= part << first;
+    };
+    std::uint32_t outside = 0;
+
+    const Bytes d;
     const auto u = hn::Set(d, probe.u);
     const auto v = hn::Set(d, probe.v);
-    const auto is_outside = hn::Or(
-        hn::Or(hn::Gt(hn::LoadU(d, at), u), hn::Lt(hn::LoadU(d, at + stride), u)),
-        hn::Or(hn::Gt(hn::LoadU(d, at + 2 * stride), v), hn::Lt(hn::LoadU(d, at + 3 * stride), v))
-    );
-    std::uint8_t bytes[8];
-    hn::StoreMaskBits(d, is_outside, bytes);
-    std::uint16_t outside = 0;
-    std::memcpy(&outside, bytes, sizeof outside);
-
-    const Words w;
-    const hn::Rebind<std::int8_t, Words> narrow;
-    const auto u_wide = hn::Set(w, static_cast<std::int16_t>(probe.u + 128));
-    const auto v_wide = hn::Set(w, static_cast<std::int16_t>(probe.v + 128));
-    std::uint32_t beyond = 0;
-    for (std::size_t i = 0; i < chunk_size; i += hn::Lanes(w)) {
-        const auto slope_u = hn::PromoteTo(w, hn::LoadU(narrow, at + 4 * stride + i));
-        const auto slope_v = hn::PromoteTo(w, hn::LoadU(narrow, at + 5 * stride + i));
-        const auto depth =
-            hn::LoadU(w, reinterpret_cast<const std::int16_t*>(at + 6 * stride + 2 * i));
-        const auto here =
-            hn::Add(depth, hn::Add(hn::Mul(slope_u, u_wide), hn::Mul(slope_v, v_wide)));
-        hn::StoreMaskBits(w, hn::Gt(here, hn::Set(w, probe.depth)), bytes);
-        std::uint16_t part = 0;
-        std::memcpy(&part, bytes, hn::Lanes(w) / 8);
-        beyond |= std::uint32_t{part} << i;
+    for (std::size_t i = 0; i < chunk_size; i += hn::Lanes(d)) {
+        const auto row = [&](std::size_t k) HWY_ATTR { return hn::LoadU(d, at + k * stride + i); };
+        const auto is_outside = hn::Or(
+            hn::Or(hn::Gt(row(0), u), hn::Lt(row(1), u)),
+            hn::Or(hn::Gt(row(2), v), hn::Lt(row(3), v))
+        );
+        hn::StoreMaskBits(d, is_outside, bytes);
+        add(outside, hn::Lanes(d), i);
     }
-    return ~(outside | beyond) & ((1U << size) - 1);
+    const Words w;
+    const auto u_fine = hn::Set(w, probe.u_fine);
+    const auto v_fine = hn::Set(w, probe.v_fine);
+    const auto depth = hn::Set(w, probe.depth);
+    for (std::size_t i = 0; i < chunk_size; i += hn::Lanes(w)) {
+        const auto row = [&](std::size_t k) HWY_ATTR {
+            return hn::LoadU(w, reinterpret_cast<const std::int16_t*>(at + k * stride + 2 * i));
+        };
+        const auto here = hn::Add(
+            row(8),
+            hn::Add(hn::MulFixedPoint15(row(4), u_fine), hn::MulFixedPoint15(row(6), v_fine))
+        );
+        hn::StoreMaskBits(w, hn::Gt(here, depth), bytes);
+        add(outside, hn::Lanes(w), i);
+    }
+    return ~outside & (0xFFFFFFFFU >> (chunk_size - size));
 }
 
 #endif
 
-/// Calls `visit(id)` for the references that the ray may meet, by depth, until it returns true.
-/// `deepest` is read again before each chunk.
+/// Calls `visit(ids, bits)` for the chunks of references, by depth, until it returns true: those
+/// whose bit is set may be met. `deepest` is read again before each chunk.
 template <class Count, class Visit>
 HWY_INLINE bool
 scan(const Grid& grid, const Leaf& leaf, const std::int32_t& deepest, Count count, Visit visit) {
     const std::byte* at = grid.lists + std::size_t{leaf.cell.link} * 16;
     prefetch(at + 64);
     prefetch(at + 128);
+    prefetch(at + 192);
     ListHead head;
     std::memcpy(&head, at, sizeof head);
     at += sizeof head;
-    const int places = leaf.shift - place_bits;
-    const auto place = [&](std::int32_t value) {
-        return static_cast<std::int8_t>(((value >> places) & 255) - 128);
+    const auto fine = [&](std::int32_t value) {
+        return static_cast<std::int16_t>(
+            ((static_cast<std::uint32_t>(value) << (top_shift - leaf.shift)) & 0xFFFFU) >> 1U
+        );
     };
-    Probe probe{place(leaf.u), place(leaf.v), 0};
+    Probe probe{0, 0, fine(leaf.u), fine(leaf.v), 0};
+    probe.u = static_cast<std::int8_t>((probe.u_fine >> 7) - 128);
+    probe.v = static_cast<std::int8_t>((probe.v_fine >> 7) - 128);
     std::size_t left = head.count();
     count.list(left);
     for (;;) {
@@ -310,14 +325,8 @@ scan(const Grid& grid, const Leaf& leaf, const std::int32_t& deepest, Count coun
         probe.depth =
             static_cast<std::int16_t>(std::min((deepest - head.base) >> head.shift(), 32767));
         const std::size_t size = std::min(left, chunk_size);
-        const std::byte* ids = at + 8 * padded(size);
-        for (unsigned bits = touched(at, size, probe); bits != 0; bits &= bits - 1) {
-            PrimId id;
-            std::memcpy(
-                &id, ids + sizeof id * static_cast<std::size_t>(std::countr_zero(bits)), sizeof id
-            );
-            if (visit(id)) return true;
-        }
+        const std::uint32_t bits = touched(at, size, probe);
+        if (bits != 0 && visit(at + 10 * padded(size), bits)) return true;
         left -= size;
         if (left == 0) return false;
         at += chunk_bytes(chunk_size);
@@ -332,14 +341,31 @@ HWY_INLINE const float* record(const Grid& grid, PrimId id) {
     return grid.records + to_index(id) * record_floats;
 }
 
+/// The id of the first bit, which is taken away.
+HWY_INLINE PrimId pop(const std::byte* ids, std::uint32_t& bits) {
+    PrimId id;
+    std::memcpy(&id, ids + sizeof id * static_cast<std::size_t>(std::countr_zero(bits)), sizeof id);
+    bits &= bits - 1;
+    return id;
+}
+
+/// When the first filter left a doubt.
+template <class Count>
+HWY_NOINLINE bool
+is_hit_after_all(const Grid& grid, const Ray& ray, const Line& line, PrimId id, Count count) {
+    const Crossing crossing = cross(line, record(grid, id));
+    if (crossing.finding != Finding::doubt) return crossing.finding == Finding::hit;
+    count.decided();
+    return decide(grid, ray, id, ray.t_max).has_value();
+}
+
 template <class Count>
 HWY_INLINE bool is_hit(const Grid& grid, const Ray& ray, const Line& line, PrimId id, Count count) {
     if (id == ray.excluded) return false;
     count.prim();
-    const Crossing crossing = cross<false>(line, record(grid, id));
-    if (crossing.finding != Finding::doubt) return crossing.finding == Finding::hit;
-    count.decided();
-    return decide(grid, ray, id, ray.t_max).has_value();
+    const Finding finding = quick_cross(line, record(grid, id));
+    if (finding == Finding::doubt) return is_hit_after_all(grid, ray, line, id, count);
+    return finding == Finding::hit;
 }
 
 /// Whether the leaf's list has all triangles that the ray may meet.
@@ -357,9 +383,18 @@ HWY_INLINE Verdict any_hit_along(const Grid& grid, const Ray& ray, Count count) 
     if (!is_inside(spot)) return Verdict::miss;
     const Leaf leaf = find_leaf(grid, spot, spot.is_whole, count);
     if (leaf.verdict) return *leaf.verdict;
-    const bool found = scan(grid, leaf, spot.deepest, count, [&](PrimId id) HWY_ATTR {
-        return is_hit(grid, ray, spot.line, id, count);
-    });
+    const bool found = scan(
+        grid,
+        leaf,
+        spot.deepest,
+        count,
+        [&](const std::byte* ids, std::uint32_t bits) HWY_ATTR {
+            do {
+                if (is_hit(grid, ray, spot.line, pop(ids, bits), count)) return true;
+            } while (bits != 0);
+            return false;
+        }
+    );
     if (found) return Verdict::hit;
     return is_complete(spot, leaf) ? Verdict::miss : Verdict::unknown;
 }
@@ -376,7 +411,7 @@ public:
     HWY_INLINE void add(PrimId id) {
         if (id == ray_.excluded || id == pending_ || id == best_.prim) return;
         count_.prim();
-        const Crossing crossing = cross<true>(line_, record(grid_, id));
+        const Crossing crossing = cross(line_, record(grid_, id));
         if (crossing.finding == Finding::miss) return;
         if (crossing.finding == Finding::doubt) {
             decide_now(id);
@@ -451,11 +486,18 @@ HWY_INLINE Verdict closest_hit_along(const Grid& grid, const Ray& ray, Hit& hit,
         limit();
         const Leaf leaf = find_leaf(grid, spot, false, count);
         if (!leaf.verdict) {
-            scan(grid, leaf, spot.deepest, count, [&](PrimId id) HWY_ATTR {
-                closest.add(id);
-                limit();
-                return false;
-            });
+            scan(
+                grid,
+                leaf,
+                spot.deepest,
+                count,
+                [&](const std::byte* ids, std::uint32_t bits) HWY_ATTR {
+                    while (bits != 0)
+                        closest.add(pop(ids, bits));
+                    limit();
+                    return false;
+                }
+            );
             is_all = is_complete(spot, leaf);
         }
     }
@@ -470,7 +512,7 @@ Verdict all_hits_along(const Grid& grid, const Ray& ray, FunctionRef<void(const 
     bool found = false;
     const auto add = [&](PrimId id) HWY_ATTR {
         if (id == ray.excluded) return;
-        if (cross<false>(spot.line, record(grid, id)).finding == Finding::miss) return;
+        if (cross(spot.line, record(grid, id)).finding == Finding::miss) return;
         if (const auto hit = decide(grid, ray, id, ray.t_max)) {
             found = true;
             visit(*hit);
@@ -482,10 +524,19 @@ Verdict all_hits_along(const Grid& grid, const Ray& ray, FunctionRef<void(const 
     if (!is_inside(spot)) return verdict();
     const Leaf leaf = find_leaf(grid, spot, false, NoCounts{});
     if (leaf.verdict) return verdict();
-    scan(grid, leaf, spot.deepest, NoCounts{}, [&](PrimId id) HWY_ATTR {
-        if (std::find(grid.near.begin(), grid.near.end(), id) == grid.near.end()) add(id);
-        return false;
-    });
+    scan(
+        grid,
+        leaf,
+        spot.deepest,
+        NoCounts{},
+        [&](const std::byte* ids, std::uint32_t bits) HWY_ATTR {
+            while (bits != 0) {
+                const PrimId id = pop(ids, bits);
+                if (std::find(grid.near.begin(), grid.near.end(), id) == grid.near.end()) add(id);
+            }
+            return false;
+        }
+    );
     return is_complete(spot, leaf) ? verdict() : Verdict::unknown;
 }
 

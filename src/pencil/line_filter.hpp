@@ -42,21 +42,29 @@ struct Crossing {
     float error;
 };
 
+// Roundings of depths, of the limits and of t itself.
+inline constexpr float less = 1 - 0x1p-20F;
+inline constexpr float more = 1 + 0x1p-20F;
+
 #if HWY_TARGET == HWY_SCALAR
 
 /// Without vectors everything is in doubt, and exact arithmetic decides.
-template <bool wanted_depth>
-Crossing cross(const Line&, const float*) {
+inline Finding quick_cross(const Line&, const float*) {
+    return Finding::doubt;
+}
+
+inline Crossing cross(const Line&, const float*) {
     return {Finding::doubt, 0, 0};
 }
 
 #else
 
+/// Three vertices of a triangle; the last lane is anything.
 using Lanes = hn::FixedTag<float, 4>;
 using Vec = hn::Vec<Lanes>;
 
-template <class V>
-HWY_INLINE V turned(V v) {
+/// Lanes 1, 2, 0 and any.
+HWY_INLINE Vec turned(Vec v) {
     alignas(16) static constexpr std::int32_t next[4] = {1, 2, 0, 3};
     return hn::TableLookupLanes(v, hn::SetTableIndices(Lanes(), next));
 }
@@ -68,17 +76,13 @@ HWY_INLINE unsigned first_three(M mask) {
     return bits[0] & 7U;
 }
 
-/// Whether the ray surely misses the triangle, surely hits its inside within [least, greatest], or
-/// neither is sure. With wanted_depth, hits come with their depth.
-///
-/// An edge function of two vertices has the error bound of ExactKernel::surely_misses, taken over
-/// the two. The depth of the hit is z = sum(e z) / sum(e) for the edge functions e, one sign all,
-/// each within b, and depths within 2^-24 of themselves, at most m: its numerator is within
-/// (3 b + 6 * 2^-24 S) m, its denominator within 3 b + 3 * 2^-24 S, S = |sum(e)|, so z is within
-/// m (6 b / S + 12 * 2^-24) with the roundings of the quotient, second order terms left out;
-/// 8 and 16 stand for 6 and 12, and b <= S / 64 is asked for.
-template <bool wanted_depth>
-HWY_INLINE Crossing cross(const Line& line, const float* record) {
+/// Edge functions a x b, b x c, c x a, bounds of their errors, and depths along the ray.
+struct Edges {
+    Vec edge, bound, along;
+};
+
+/// The error of an edge function of two vertices: ExactKernel::surely_misses, taken over the two.
+HWY_INLINE Edges edges(const Line& line, const float* record) {
     const Lanes d;
     const Vec z = hn::Sub(hn::LoadU(d, record + line.at_z), hn::Set(d, line.origin_z));
     const Vec x = hn::Sub(
@@ -89,7 +93,6 @@ HWY_INLINE Crossing cross(const Line& line, const float* record) {
         hn::Sub(hn::LoadU(d, record + line.at_v), hn::Set(d, line.origin_v)),
         hn::Mul(hn::Set(d, line.shear_v), z)
     );
-    // Lanes: a x b, b x c, c x a.
     const Vec edge = hn::Sub(hn::Mul(x, turned(y)), hn::Mul(y, turned(x)));
     const Vec wide = hn::Max(hn::Abs(x), hn::Abs(y));
     const Vec deep = hn::Abs(z);
@@ -104,41 +107,59 @@ HWY_INLINE Crossing cross(const Line& line, const float* record) {
         ),
         hn::Set(d, line.doubt)
     );
-    const unsigned positive = first_three(hn::Gt(edge, bound));
-    const unsigned negative = first_three(hn::Lt(edge, hn::Neg(bound)));
-    if (positive != 0 && negative != 0) return {Finding::miss, 0, 0};
+    return {edge, bound, hn::Mul(z, hn::Set(d, line.sign))};
+}
 
-    const Vec along = hn::Mul(z, hn::Set(d, line.sign));
-    // Roundings of z, of the limits and of t itself.
-    constexpr float less = 1 - 0x1p-20F;
-    constexpr float more = 1 + 0x1p-20F;
-    const float tiny = line.slack;
-    if (first_three(hn::Lt(along, hn::Set(d, line.least * less - tiny))) == 7 ||
-        first_three(hn::Gt(along, hn::Set(d, line.greatest * more + tiny))) == 7)
+/// Whether the ray surely misses the triangle, surely hits its inside with all vertices within
+/// [least, greatest], or neither is sure: then `cross` may know more.
+HWY_INLINE Finding quick_cross(const Line& line, const float* record) {
+    const Lanes d;
+    const Edges e = edges(line, record);
+    const unsigned positive = first_three(hn::Gt(e.edge, e.bound));
+    const unsigned negative = first_three(hn::Lt(e.edge, hn::Neg(e.bound)));
+    if (positive != 0 && negative != 0) return Finding::miss;
+    const unsigned within = first_three(hn::And(
+        hn::Ge(e.along, hn::Set(d, line.least * more + line.slack)),
+        hn::Le(e.along, hn::Set(d, line.greatest * less - line.slack))
+    ));
+    return (positive | negative) == 7 && within == 7 ? Finding::hit : Finding::doubt;
+}
+
+/// Whether the ray surely misses the triangle, surely hits its inside within [least, greatest], or
+/// neither is sure.
+///
+/// The depth of the hit is z = sum(e z) / sum(e) for the edge functions e, one sign all, each
+/// within b, and depths within 2^-24 of themselves, at most m: its numerator is within (3 b + 6 *
+/// 2^-24 S) m, its denominator within 3 b + 3 * 2^-24 S, S = |sum(e)|, so z is within m (6 b / S +
+/// 12 * 2^-24) with the roundings of the quotient, second order terms left out; 8 and 16 stand for
+/// 6 and 12, and b <= S / 64 is asked for.
+HWY_INLINE Crossing cross(const Line& line, const float* record) {
+    const Lanes d;
+    const Edges edge = edges(line, record);
+    const unsigned positive = first_three(hn::Gt(edge.edge, edge.bound));
+    const unsigned negative = first_three(hn::Lt(edge.edge, hn::Neg(edge.bound)));
+    if (positive != 0 && negative != 0) return {Finding::miss, 0, 0};
+    alignas(16) float e[4], f[4], b[4];
+    hn::Store(edge.edge, d, e);
+    hn::Store(edge.along, d, f);
+    hn::Store(edge.bound, d, b);
+    const float least = std::min(std::min(f[0], f[1]), f[2]);
+    const float greatest = std::max(std::max(f[0], f[1]), f[2]);
+    if (greatest < line.least * less - line.slack || least > line.greatest * more + line.slack)
         return {Finding::miss, 0, 0};
     if (positive != 7 && negative != 7) return {Finding::doubt, 0, 0};
-    const float surely_least = line.least * more + tiny;
-    const float surely_greatest = line.greatest * less - tiny;
-    if constexpr (!wanted_depth) {
-        if (first_three(hn::And(
-                hn::Ge(along, hn::Set(d, surely_least)), hn::Le(along, hn::Set(d, surely_greatest))
-            )) == 7)
-            return {Finding::hit, 0, 0};
-    }
-    alignas(16) float e[4], f[4], b[4];
-    hn::Store(edge, d, e);
-    hn::Store(along, d, f);
-    hn::Store(bound, d, b);
     const float sum = e[0] + e[1] + e[2];
     const float weight = std::abs(sum);
     const float most_wrong = std::max(std::max(b[0], b[1]), b[2]);
     if (!(most_wrong * 64 <= weight)) return {Finding::doubt, 0, 0};
     const float depth = (e[0] * f[2] + e[1] * f[0] + e[2] * f[1]) / sum;
-    const float most = std::max(std::max(std::abs(f[0]), std::abs(f[1])), std::abs(f[2]));
-    const float error = most * (8 * most_wrong / weight + 16 * 0x1p-24F) + tiny;
-    if (depth - error >= surely_least && depth + error <= surely_greatest)
+    const float most = std::max(std::abs(least), std::abs(greatest));
+    const float error = most * (8 * most_wrong / weight + 16 * 0x1p-24F) + line.slack;
+    if (depth - error >= line.least * more + line.slack &&
+        depth + error <= line.greatest * less - line.slack)
         return {Finding::hit, depth, error};
-    if (depth + error < line.least * less - tiny || depth - error > line.greatest * more + tiny)
+    if (depth + error < line.least * less - line.slack ||
+        depth - error > line.greatest * more + line.slack)
         return {Finding::miss, 0, 0};
     return {Finding::doubt, 0, 0};
 }

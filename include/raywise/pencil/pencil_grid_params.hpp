@@ -11,11 +11,11 @@ namespace raywise {
 /// Parameters of build_pencil_grid.
 struct PencilGridParams {
     /// References that a cell of the uniform top grid should have on average, in [1, 256]. Fewer,
-    /// longer lists cost less memory and time to build; a query looks at 16 of them at once.
-    double cell_size = 8;
+    /// longer lists cost less memory and time to build; a query looks at 32 of them at once.
+    double cell_size = 16;
 
     /// A cell with more references is cut into 4 x 4, while that pays, in [4, 4096].
-    std::uint32_t leaf_size = 32;
+    std::uint32_t leaf_size = 128;
 
     /// The cap on size_in_bytes() is this times the triangles, plus 64 KiB; >= 64. The build keeps
     /// it by taking coarser cells.
