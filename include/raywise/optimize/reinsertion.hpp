@@ -11,9 +11,9 @@ namespace raywise {
 
 /// Parameters of reinsert.
 struct ReinsertionParams {
-    double batch = 0.25;       ///< share of the nodes, those of most mass, that every round
-                               ///< looks at; in (0, 1]
-    double least_gain = 0.002; ///< a round that lowers the summed mass of the inner nodes by a
+    double batch = 0.25;       ///< share of the nodes that every round looks at, the heaviest
+                               ///< that are not known to stand well; in (0, 1]
+    double least_gain = 0.003; ///< a round that lowers the summed mass of the inner nodes by a
                                ///< smaller share is the last; >= 0
     int max_rounds = 8;        ///< in [0, 1000]
 };

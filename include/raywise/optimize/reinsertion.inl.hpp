@@ -74,14 +74,18 @@ template <HitMeasure M>
     return best;
 }
 
-/// The nodes of most mass, but for the root and its children; ties by place.
+/// The nodes of most mass, but for the root, its children and those that are settled; ties by
+/// place.
 template <HitMeasure M>
-[[nodiscard]] std::vector<std::uint32_t>
-heaviest_nodes(const LooseTree<M>& tree, std::size_t count) {
+[[nodiscard]] std::vector<std::uint32_t> heaviest_nodes(
+    const LooseTree<M>& tree,
+    std::size_t count,
+    const std::vector<std::uint8_t>& is_settled
+) {
     std::vector<std::uint32_t> nodes;
     nodes.reserve(tree.size());
     for (std::uint32_t i = 1; i < tree.size(); ++i)
-        if (tree.parent(i) != LooseTree<M>::root) nodes.push_back(i);
+        if (is_settled[i] == 0 && tree.parent(i) != LooseTree<M>::root) nodes.push_back(i);
     if (count >= nodes.size()) return nodes;
     const auto is_heavier = [&](std::uint32_t a, std::uint32_t b) {
         return tree.mass(a) > tree.mass(b) || (tree.mass(a) == tree.mass(b) && a < b);
@@ -94,16 +98,24 @@ heaviest_nodes(const LooseTree<M>& tree, std::size_t count) {
 }
 
 /// One round: places are looked for in parallel in the tree as it is, then moves are made one by
-/// one, the most gainful first.
+/// one, the most gainful first. A node that is best where it is is settled: later rounds look at
+/// lighter ones instead.
 template <HitMeasure M>
-void reinsert_once(LooseTree<M>& tree, std::size_t count, const Executor& executor) {
+void reinsert_once(
+    LooseTree<M>& tree,
+    std::size_t count,
+    std::vector<std::uint8_t>& is_settled,
+    const Executor& executor
+) {
     constexpr std::size_t chunk = 128;
-    const std::vector<std::uint32_t> nodes = heaviest_nodes(tree, count);
+    const std::vector<std::uint32_t> nodes = heaviest_nodes(tree, count, is_settled);
     std::vector<Reinsertion> found(nodes.size());
     executor.for_each_chunk(nodes.size(), chunk, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
             found[i] = find_place(tree, nodes[i]);
     });
+    for (const Reinsertion& r : found)
+        if (!(r.gain > 0)) is_settled[r.moved] = 1;
     const auto is_useless = [](const Reinsertion& r) { return !(r.gain > 0); };
     found.erase(std::remove_if(found.begin(), found.end(), is_useless), found.end());
     std::sort(found.begin(), found.end(), [](const Reinsertion& a, const Reinsertion& b) {
@@ -124,10 +136,11 @@ Bvh reinsert(
     if (tree.nodes.size() < 5) return tree;
     const auto optimize = [&](const M& local) {
         LooseTree<M> loose(tree, local);
+        std::vector<std::uint8_t> is_settled(loose.size(), 0);
         const double share = params.batch * static_cast<double>(loose.size());
         for (int round = 0; round < params.max_rounds; ++round) {
             const double before = loose.inner_mass();
-            reinsert_once(loose, static_cast<std::size_t>(share) + 1, executor);
+            reinsert_once(loose, static_cast<std::size_t>(share) + 1, is_settled, executor);
             if (!(before - loose.inner_mass() > params.least_gain * before)) break;
         }
         Bvh result;
