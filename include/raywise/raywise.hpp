@@ -118,6 +118,7 @@
 #include <raywise/toplevel/accelerator.hpp>          // IWYU pragma: export
 #include <raywise/toplevel/area_id.hpp>              // IWYU pragma: export
 #include <raywise/toplevel/build_tree.hpp>           // IWYU pragma: export
+#include <raywise/toplevel/build_wide.hpp>           // IWYU pragma: export
 #include <raywise/toplevel/membership.hpp>           // IWYU pragma: export
 #include <raywise/toplevel/open_place.hpp>           // IWYU pragma: export
 #include <raywise/toplevel/pencil_of.hpp>            // IWYU pragma: export
@@ -127,6 +128,8 @@
 #include <raywise/toplevel/region_list.hpp>          // IWYU pragma: export
 #include <raywise/toplevel/region_octree.hpp>        // IWYU pragma: export
 #include <raywise/toplevel/served.hpp>               // IWYU pragma: export
+#include <raywise/toplevel/structure_choice.hpp>     // IWYU pragma: export
+#include <raywise/toplevel/traced_tree.hpp>          // IWYU pragma: export
 #include <raywise/trace/all_hits.hpp>                // IWYU pragma: export
 #include <raywise/trace/any_hit.hpp>                 // IWYU pragma: export
 #include <raywise/trace/brute_force.hpp>             // IWYU pragma: export

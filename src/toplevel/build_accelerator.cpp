@@ -4,14 +4,16 @@
 
 #include <raywise/bvh/remap.hpp>
 #include <raywise/core/error.hpp>
-#include <raywise/optimize/collapse.hpp>
 #include <raywise/toplevel/accelerator.hpp>
 #include <raywise/toplevel/pencil_of.hpp>
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace raywise {
 
@@ -101,6 +103,36 @@ double measure_gain(const Accelerator& accelerator, AreaId id, const GainParams&
     return (cost_of(global_alone) - cost_of(with_area)) / static_cast<double>(params.rays);
 }
 
+/// A copy of some triangles, in the order of their list.
+class Subset {
+public:
+    Subset(const TriangleView& triangles, const std::vector<PrimId>& members) {
+        vertices_.reserve(3 * members.size());
+        corners_.reserve(members.size());
+        for (const PrimId member : members) {
+            const auto first = static_cast<std::uint32_t>(vertices_.size());
+            const auto& [v0, v1, v2] = triangles[member];
+            vertices_.insert(vertices_.end(), {v0, v1, v2});
+            corners_.push_back({first, first + 1, first + 2});
+        }
+    }
+
+    [[nodiscard]] TriangleView view() const { return {vertices_, corners_}; }
+
+private:
+    std::vector<Vec3> vertices_;
+    std::vector<std::array<std::uint32_t, 3>> corners_;
+};
+
+/// Primitive i becomes ids[i].
+void remap_prims(WideBvh& tree, const std::vector<PrimId>& ids) {
+    for (TriangleBlock& block : tree.blocks) {
+        for (PrimId& prim : block.prims) {
+            if (prim != no_prim) prim = ids[to_index(prim)];
+        }
+    }
+}
+
 } // namespace
 
 namespace detail {
@@ -119,11 +151,14 @@ public:
         result_.params_ = params;
         result_.areas_ = std::move(areas);
         progress_.step("build", 0, steps());
-        Bvh tree =
-            build_tree(build_input_of(triangles_, executor_), result_.params_.global, executor_)
-                .tree;
         result_.global_tree_ =
-            traced(std::move(tree), result_.params_.global_structure, SurfaceMeasure{});
+            params.global_structure == StructureKind::wide_tree
+                ? TracedTree(build_wide(triangles_, params.quality, executor_))
+                : TracedTree(
+                      build_tree(build_input_of(triangles_, executor_), params.global, executor_)
+                          .tree,
+                      triangles_
+                  );
         std::vector<Region> regions;
         for (const InfluenceArea& area : result_.areas_)
             regions.push_back(area.region);
@@ -151,12 +186,6 @@ public:
 private:
     [[nodiscard]] std::size_t steps() const { return result_.areas_.size() + 1; }
 
-    template <HitMeasure M>
-    [[nodiscard]] TracedTree traced(Bvh tree, StructureKind kind, const M& measure) const {
-        if (kind == StructureKind::binary_tree) return {std::move(tree), triangles_};
-        return TracedTree(collapse(tree, triangles_, measure, {}, executor_));
-    }
-
     [[nodiscard]] LocalStructure build_local(const InfluenceArea& area) const {
         LocalStructure structure;
         structure.pencil = pencil_of(area);
@@ -181,17 +210,25 @@ private:
     void build_local_tree(LocalStructure& structure, const InfluenceArea& area) const {
         const AcceleratorParams& params = result_.params_;
         const auto members = members_of(triangles_, area.region, params.membership, executor_);
-        const BuildInput input = build_input_of(triangles_, members, executor_);
-        Bvh tree = build_tree(input, area.distribution, params.local, executor_).tree;
-        remap_prims(tree, members);
-        structure.expected_cost = expected_cost(tree, area, params.local.binned.cost);
-        structure.tree = std::visit(
-            [&](const auto& measure) {
-                return traced(std::move(tree), structure.choice.kind, measure);
-            },
-            measure_of(area.distribution)
-        );
         structure.has_tree = true;
+        if (structure.choice.kind == StructureKind::binary_tree) {
+            const BuildInput input = build_input_of(triangles_, members, executor_);
+            Bvh tree = build_tree(input, area.distribution, params.local, executor_).tree;
+            remap_prims(tree, members);
+            structure.expected_cost = expected_cost(tree, area, params.local.binned.cost);
+            structure.tree = TracedTree(std::move(tree), triangles_);
+        } else {
+            const Subset subset(triangles_, members);
+            WideBvh tree = build_wide(
+                subset.view(),
+                area.distribution,
+                params.local.surface_share,
+                params.quality,
+                executor_
+            );
+            remap_prims(tree, members);
+            structure.tree = TracedTree(std::move(tree));
+        }
     }
 
     [[nodiscard]] const AreaUse& use_of(const InfluenceArea& area) const {

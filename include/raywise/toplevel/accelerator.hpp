@@ -16,6 +16,7 @@
 #include <raywise/scene/scene.hpp>
 #include <raywise/toplevel/area_id.hpp>
 #include <raywise/toplevel/build_tree.hpp>
+#include <raywise/toplevel/build_wide.hpp>
 #include <raywise/toplevel/membership.hpp>
 #include <raywise/toplevel/region_index.hpp>
 #include <raywise/toplevel/served.hpp>
@@ -57,7 +58,8 @@ struct AcceleratorParams {
     AreaUse use{};
     std::map<std::string, AreaUse, std::less<>> uses{};        ///< by name of area
     StructureKind global_structure = StructureKind::wide_tree; ///< or binary_tree, to look at nodes
-    Heuristic local{};                                         ///< of the areas' trees
+    TreeQuality quality = TreeQuality::high;                   ///< of wide trees
+    Heuristic local{};                                         ///< of the areas' binary trees
     Heuristic global = surface_area_heuristic();               ///< of the tree over everything
     MembershipParams membership{}; ///< `vertices` only with QueryMode::first_hit_wins
     RegionIndexParams index{};     ///< OctreeMode::over only with QueryMode::first_hit_wins
@@ -119,8 +121,8 @@ public:
     /// Whether there is a hit in [t_min, t_max].
     [[nodiscard]] bool any_hit(const Ray& ray) const;
 
-    /// Calls `visit(const Hit&)` for every hit in [t_min, t_max], once each, in no particular
-    /// order.
+    /// Calls `visit(const Hit&)` for every hit in [t_min, t_max], once each, by rising (t, id).
+    /// Allocates the list.
     template <class Visitor>
     void all_hits(const Ray& ray, Visitor&& visit) const;
 

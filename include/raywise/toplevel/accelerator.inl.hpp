@@ -6,11 +6,11 @@
 #pragma once
 
 #include <raywise/toplevel/accelerator.hpp> // IWYU pragma: keep
+#include <raywise/trace/all_hits.hpp>
 
-#include <cmath>
-#include <limits>
+#include <algorithm>
 #include <type_traits>
-#include <utility>
+#include <vector>
 
 namespace raywise {
 
@@ -161,19 +161,24 @@ bool Accelerator::any_hit(const Ray& ray, Observer& seen) const {
 template <class Visitor>
 void Accelerator::all_hits(const Ray& ray, Visitor&& visit) const {
     if (!is_valid(ray)) return;
+    std::vector<Hit> hits;
+    const auto collect = [&](const Hit& hit) { hits.push_back(hit); };
     Ray rest = ray;
     const Candidates candidates = candidates_of(ray);
+    bool is_done = false;
     if (params_.mode == QueryMode::exact && candidates.count > 0 &&
         candidates.items[0].exit > ray.t_min) {
-        const LocalStructure& structure = local(candidates.items[0].area);
         rest.t_max = std::min(ray.t_max, candidates.items[0].exit);
-        structure.tree.all_hits(rest, visit);
-        if (rest.t_max == ray.t_max) return;
-        // The global part is open at the exit, or hits there would be reported twice.
-        rest.t_min = std::nextafter(rest.t_max, std::numeric_limits<float>::infinity());
+        local(candidates.items[0].area).tree.all_hits(rest, collect);
+        is_done = rest.t_max == ray.t_max;
+        rest.t_min = rest.t_max;
         rest.t_max = ray.t_max;
     }
-    global_tree_.all_hits(rest, visit);
+    if (!is_done) global_tree_.all_hits(rest, collect);
+    // A hit at the exit, or of a triangle that stands in several leaves, was found twice.
+    sort_hits(hits);
+    for (const Hit& hit : hits)
+        visit(hit);
 }
 
 template <QueryObserver Observer>

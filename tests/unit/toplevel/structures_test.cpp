@@ -4,6 +4,7 @@
 #include <raywise/core/error.hpp>
 #include <raywise/scene/generate.hpp>
 #include <raywise/toplevel/accelerator.hpp>
+#include <raywise/trace/all_hits.hpp>
 #include <raywise/trace/closest_hit.hpp>
 #include <raywise/trace/triangles.hpp>
 
@@ -81,6 +82,12 @@ TEST(Structures, EveryKindAnswersLikeOnePlainTree) {
             ASSERT_EQ(accelerator.any_hit(ray), expected.has_value()) << seed << " ray " << i;
             ASSERT_TRUE(is_same(handle.closest_hit(ray), expected)) << seed << " ray " << i;
             ASSERT_EQ(handle.any_hit(ray), expected.has_value()) << seed << " ray " << i;
+            std::vector<Hit> all;
+            accelerator.all_hits(ray, [&](const Hit& hit) { all.push_back(hit); });
+            const auto sorted = sorted_hits(plain.tree, plain.triangles, ray);
+            ASSERT_EQ(all.size(), sorted.size()) << seed << " ray " << i;
+            for (std::size_t k = 0; k < all.size(); ++k)
+                ASSERT_TRUE(is_same(all[k], sorted[k])) << seed << " ray " << i;
             ++rays;
             const Search* answer = served.answered();
             by_grid += answer && answer->area && accelerator.local(*answer->area).grid ? 1U : 0U;
