@@ -165,8 +165,8 @@ void add_table(
     if (!rows.empty()) report.more.push_back({key, title, table_of<Row>(rows, columns)});
 }
 
-/// Geometric mean of each scene's rows, then of the scenes: a scene with more classes counts no
-/// more than another.
+/// Over the scenes; a scene's own is the geometric mean of its rows, so that one with more classes
+/// counts no more than another.
 struct Means {
     double all = 1;
     double worst = 1;
@@ -174,11 +174,12 @@ struct Means {
     std::size_t scenes = 0;
 };
 
-Means means_of(const SceneBench& bench, RayKind kind, Peer peer) {
+/// Of the timed rows that `is_meant` picks.
+template <class IsMeant>
+Means means_of(const SceneBench& bench, const IsMeant& is_meant) {
     std::map<std::string, std::vector<double>> by_scene;
     for (const BenchRow& row : bench.rows)
-        if (kind_of(row.rays) == kind && row.peer == peer && row.rounds > 0)
-            by_scene[row.scene].push_back(row.ratio);
+        if (row.rounds > 0 && is_meant(row)) by_scene[row.scene].push_back(row.ratio);
     Means means;
     std::vector<double> of_scenes;
     for (const auto& [scene, ratios] : by_scene) {
@@ -192,6 +193,37 @@ Means means_of(const SceneBench& bench, RayKind kind, Peer peer) {
     means.scenes = of_scenes.size();
     means.all = geometric_mean(of_scenes);
     return means;
+}
+
+/// What a class of rays gives over all scenes.
+struct ClassMeans {
+    RayClass rays = RayClass::primary;
+    Peer peer = Peer::single;
+    Means means;
+};
+
+std::vector<ClassMeans> class_means(const SceneBench& bench) {
+    std::vector<ClassMeans> rows;
+    for (const RayClass rays : all_ray_classes()) {
+        for (const Peer peer : {Peer::single, Peer::best}) {
+            const Means means = means_of(bench, [&](const BenchRow& row) {
+                return row.rays == rays && row.peer == peer;
+            });
+            if (means.scenes > 1) rows.push_back({rays, peer, means});
+        }
+    }
+    return rows;
+}
+
+std::vector<ColumnOf<ClassMeans>> class_columns() {
+    return {
+        {"rays", [](const ClassMeans& row) { return text(name_of(row.rays)); }},
+        {"peer", [](const ClassMeans& row) { return text(name_of(row.peer)); }},
+        {"scenes", [](const ClassMeans& row) { return count(row.means.scenes); }},
+        {"ratio", [](const ClassMeans& row) { return Cell(row.means.all); }},
+        {"worst_ratio", [](const ClassMeans& row) { return Cell(row.means.worst); }},
+        {"worst_scene", [](const ClassMeans& row) { return text(row.means.worst_scene); }},
+    };
 }
 
 std::string verdict(const Means& means, RayKind kind, Peer peer) {
@@ -220,7 +252,9 @@ std::vector<std::string> findings_of(const SceneBench& bench) {
     std::vector<std::string> findings;
     for (const RayKind kind : {RayKind::exact, RayKind::near_affine, RayKind::general}) {
         for (const Peer peer : {Peer::single, Peer::best}) {
-            const Means means = means_of(bench, kind, peer);
+            const Means means = means_of(bench, [&](const BenchRow& row) {
+                return kind_of(row.rays) == kind && row.peer == peer;
+            });
             if (means.scenes > 0) findings.push_back(verdict(means, kind, peer));
         }
     }
@@ -253,6 +287,13 @@ Report report_of(const SceneBench& bench, ReportFormat format, Provenance proven
         "Mrays/s beside Embree: same rays, verified answers, ratios of interleaved pairs";
     report.table = table_of<BenchRow>(
         bench.rows, format == ReportFormat::table ? deciding_columns() : all_columns()
+    );
+    add_table<ClassMeans>(
+        report,
+        "classes",
+        "Ratios over the scenes, geometric means",
+        class_means(bench),
+        class_columns()
     );
     add_table<BuildRow>(report, "builds", "Builds", bench.builds, build_columns());
     add_table<BreakEvenRow>(

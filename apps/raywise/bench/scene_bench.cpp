@@ -42,11 +42,9 @@ public:
         // own, so that the structures of all areas need not be in memory at once.
         run_classes(peers, [](RayKind kind) { return kind != RayKind::near_affine; });
         run_classes(peers, [](RayKind kind) { return kind == RayKind::near_affine; });
-        std::stable_sort(
-            bench_.rows.begin(),
-            bench_.rows.end(),
-            [](const BenchRow& a, const BenchRow& b) { return a.rays < b.rays; }
-        );
+        std::sort(bench_.rows.begin(), bench_.rows.end(), [](const BenchRow& a, const BenchRow& b) {
+            return std::pair(a.rays, a.peer) < std::pair(b.rays, b.peer);
+        });
         measure_grids();
         return std::move(bench_);
     }

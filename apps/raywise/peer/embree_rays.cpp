@@ -1,50 +1,15 @@
-#include "embree.hpp"
+#include "embree_state.hpp"
+#include "flushed_denormals.hpp"
 
-#include <raywise/analysis/stopwatch.hpp>
 #include <raywise/core/error.hpp>
 
-#include <embree3/rtcore.h>
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <atomic>
 #include <limits>
 #include <type_traits>
-#include <utility>
-
-#if defined(__SSE2__)
-#include <xmmintrin.h>
-#endif
 
 namespace raywise::app {
 
 namespace {
-
-/// Embree asks its callers to flush denormal numbers while it traces; ours must not.
-class FlushedDenormals {
-public:
-#if defined(__SSE2__)
-    FlushedDenormals() {
-        constexpr unsigned flush_results = 0x8000;
-        constexpr unsigned flush_operands = 0x0040;
-        _mm_setcsr(before_ | flush_results | flush_operands);
-    }
-
-    ~FlushedDenormals() { _mm_setcsr(before_); }
-#else
-    FlushedDenormals() = default;
-    ~FlushedDenormals() = default;
-#endif
-    FlushedDenormals(const FlushedDenormals&) = delete;
-    FlushedDenormals& operator=(const FlushedDenormals&) = delete;
-    FlushedDenormals(FlushedDenormals&&) = delete;
-    FlushedDenormals& operator=(FlushedDenormals&&) = delete;
-
-private:
-#if defined(__SSE2__)
-    unsigned before_ = _mm_getcsr();
-#endif
-};
 
 template <int width>
 struct PacketTypes;
@@ -123,129 +88,7 @@ RTCIntersectContext context_of(const PeerCall& call) {
     return context;
 }
 
-std::string instruction_set(RTCDevice device) {
-    const auto has = [&](RTCDeviceProperty property) {
-        return rtcGetDeviceProperty(device, property) != 0;
-    };
-    if (has(RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED)) return "AVX-512";
-    if (!has(RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED)) return "SSE";
-#if defined(__x86_64__)
-    if (__builtin_cpu_supports("avx2") == 0) return "AVX";
-#endif
-    return "AVX2";
-}
-
-std::string version_of(RTCDevice device) {
-    const auto number = rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_VERSION);
-    return fmt::format(
-        "{}.{}.{}, {}", number / 10000, number / 100 % 100, number % 100, instruction_set(device)
-    );
-}
-
-[[noreturn]] void refuse(RTCDevice device, const char* what) {
-    throw Error(fmt::format(
-        "Embree cannot {} (error {})", what, static_cast<int>(rtcGetDeviceError(device))
-    ));
-}
-
-bool count_bytes(void* counter, ssize_t bytes, bool) {
-    static_cast<std::atomic<std::ptrdiff_t>*>(counter)->fetch_add(bytes, std::memory_order_relaxed);
-    return true;
-}
-
 } // namespace
-
-bool has_embree() {
-    return true;
-}
-
-std::string embree_version() {
-    RTCDevice device = rtcNewDevice("threads=1");
-    if (device == nullptr) refuse(nullptr, "make a device");
-    std::string text = version_of(device);
-    rtcReleaseDevice(device);
-    return text;
-}
-
-struct EmbreePeer::State {
-    State() = default;
-    State(const State&) = delete;
-    State& operator=(const State&) = delete;
-    State(State&&) = delete;
-    State& operator=(State&&) = delete;
-
-    ~State() {
-        rtcReleaseScene(scene);
-        rtcReleaseDevice(device);
-    }
-
-    std::vector<Vec3> vertices; ///< padded
-    std::atomic<std::ptrdiff_t> held = 0;
-    RTCDevice device = nullptr;
-    RTCScene scene = nullptr;
-    double build_ms = 0;
-    std::size_t bytes = 0;
-};
-
-EmbreePeer::EmbreePeer(const Scene& scene, const PeerParams& params)
-    : state_(std::make_unique<State>()) {
-    State& state = *state_;
-    state.vertices = scene.vertices;
-    state.vertices.emplace_back(); // Embree reads 16 bytes at the last vertex
-    state.device = rtcNewDevice(fmt::format("threads={}", params.threads).c_str());
-    if (state.device == nullptr) refuse(nullptr, "make a device");
-    rtcSetDeviceMemoryMonitorFunction(state.device, count_bytes, &state.held);
-
-    RTCGeometry mesh = rtcNewGeometry(state.device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    rtcSetSharedGeometryBuffer(
-        mesh,
-        RTC_BUFFER_TYPE_VERTEX,
-        0,
-        RTC_FORMAT_FLOAT3,
-        state.vertices.data(),
-        0,
-        sizeof(Vec3),
-        scene.vertices.size()
-    );
-    rtcSetSharedGeometryBuffer(
-        mesh,
-        RTC_BUFFER_TYPE_INDEX,
-        0,
-        RTC_FORMAT_UINT3,
-        scene.triangles.data(),
-        0,
-        sizeof scene.triangles[0],
-        scene.triangles.size()
-    );
-    const RTCBuildQuality quality =
-        params.quality == PeerQuality::high ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_MEDIUM;
-    rtcSetGeometryBuildQuality(mesh, quality);
-    rtcCommitGeometry(mesh);
-    state.scene = rtcNewScene(state.device);
-    rtcSetSceneBuildQuality(state.scene, quality);
-    if (params.is_robust) rtcSetSceneFlags(state.scene, RTC_SCENE_FLAG_ROBUST);
-    rtcAttachGeometryByID(state.scene, mesh, 0);
-    rtcReleaseGeometry(mesh);
-
-    const std::ptrdiff_t before = state.held.load();
-    const Stopwatch watch;
-    rtcCommitScene(state.scene);
-    state.build_ms = watch.milliseconds();
-    state.bytes = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, state.held.load() - before));
-    if (rtcGetDeviceError(state.device) != RTC_ERROR_NONE) refuse(state.device, "build the scene");
-}
-
-EmbreePeer::~EmbreePeer() = default;
-EmbreePeer::EmbreePeer(EmbreePeer&&) noexcept = default;
-EmbreePeer& EmbreePeer::operator=(EmbreePeer&&) noexcept = default;
-
-double EmbreePeer::build_ms() const {
-    return state_->build_ms;
-}
-
-std::size_t EmbreePeer::bytes() const {
-    return state_->bytes;
-}
 
 struct PeerRays::Layouts {
     std::span<const Ray> given;
