@@ -108,6 +108,7 @@
 #include <raywise/optimize/collapse.hpp>             // IWYU pragma: export
 #include <raywise/optimize/depth_first.hpp>          // IWYU pragma: export
 #include <raywise/optimize/loose_tree.hpp>           // IWYU pragma: export
+#include <raywise/optimize/node_masses.hpp>          // IWYU pragma: export
 #include <raywise/optimize/reinsertion.hpp>          // IWYU pragma: export
 #include <raywise/pencil/inversion.hpp>              // IWYU pragma: export
 #include <raywise/pencil/pencil.hpp>                 // IWYU pragma: export

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <raywise/bvh/bvh.hpp>
+#include <raywise/core/executor.hpp>
 #include <raywise/geometry/aabb.hpp>
 #include <raywise/geometry/hit_measure.hpp>
+#include <raywise/optimize/node_masses.hpp>
 
 #include <algorithm>
 #include <cassert>
@@ -23,17 +25,20 @@ public:
 
     /// `tree` must be valid and not empty; `measure` must outlive this. Inner boxes become the
     /// union of their children's.
-    LooseTree(const Bvh& tree, const M& measure) : measure_(measure), entries_(tree.nodes.size()) {
+    LooseTree(const Bvh& tree, const M& measure, const Executor& executor = serial_executor())
+        : measure_(measure), entries_(tree.nodes.size()) {
+        // Input boxes may be wider than their children's: those weigh anew.
+        const std::vector<float> masses = node_masses(tree, measure, executor);
         for (std::size_t i = tree.nodes.size(); i-- > 0;) {
             Entry& entry = entries_[i];
             entry.node = tree.nodes[i];
-            if (!entry.node.is_leaf()) {
-                entry.parent_of_pair(*this, static_cast<Index>(i));
-                fit(static_cast<Index>(i));
-                inner_mass_ += static_cast<double>(entry.mass);
-            } else {
-                entry.mass = mass_of(entry.node.box());
-            }
+            entry.mass = masses[i];
+            if (entry.node.is_leaf()) continue;
+            const Index left = static_cast<Index>(entry.node.left());
+            entries_[left].parent = static_cast<Index>(i);
+            entries_[left + 1].parent = static_cast<Index>(i);
+            fit(static_cast<Index>(i));
+            inner_mass_ += static_cast<double>(entry.mass);
         }
     }
 
@@ -66,12 +71,6 @@ private:
         Index parent = root;
         float mass = 0;
         std::uint32_t height = 0;
-
-        void parent_of_pair(LooseTree& tree, Index self) const {
-            const auto left = static_cast<Index>(node.left());
-            tree.entries_[left].parent = self;
-            tree.entries_[left + 1].parent = self;
-        }
     };
 
     struct Change {
@@ -84,8 +83,12 @@ private:
         Entry& entry = entries_[i];
         const Entry& left = entries_[to_index(entry.node.left())];
         const Entry& right = entries_[to_index(entry.node.right())];
-        entry.node.set_box(unite(left.node.box(), right.node.box()));
-        entry.mass = mass_of(entry.node.box());
+        const Aabb box = unite(left.node.box(), right.node.box());
+        // A measure may be dear.
+        if (!(box == entry.node.box())) {
+            entry.node.set_box(box);
+            entry.mass = mass_of(box);
+        }
         entry.height = 1 + std::max(left.height, right.height);
     }
 
@@ -170,7 +173,7 @@ bool LooseTree<M>::move(Index moved, Index target) {
     put(pair, at_target);
     put(pair + 1, taken);
     save(target);
-    entries_[target].node = Node::inner(at_target.node.box(), static_cast<NodeId>(pair));
+    entries_[target].node = Node::inner(Aabb{}, static_cast<NodeId>(pair));
     entries_[target].mass = 0;
     fit_upward(target);
     if (inner_mass_ < mass_before) return true;

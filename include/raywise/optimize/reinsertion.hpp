@@ -11,7 +11,7 @@ namespace raywise {
 
 /// Parameters of reinsert.
 struct ReinsertionParams {
-    double batch = 0.25;       ///< share of the nodes that every round looks at, the heaviest
+    double batch = 0.1;        ///< share of the nodes that every round looks at, the heaviest
                                ///< that are not known to stand well; in (0, 1]
     double least_gain = 0.003; ///< a round that lowers the summed mass of the inner nodes by a
                                ///< smaller share is the last; >= 0

@@ -135,7 +135,7 @@ Bvh reinsert(
     check(params);
     if (tree.nodes.size() < 5) return tree;
     const auto optimize = [&](const M& local) {
-        LooseTree<M> loose(tree, local);
+        LooseTree<M> loose(tree, local, executor);
         std::vector<std::uint8_t> is_settled(loose.size(), 0);
         const double share = params.batch * static_cast<double>(loose.size());
         for (int round = 0; round < params.max_rounds; ++round) {
