@@ -94,9 +94,10 @@ double scale(
     map.slope_u *= map.scale_u;
     map.slope_v *= map.scale_v;
     const double farthest = std::max(std::abs(ranges.z.least), std::abs(ranges.z.greatest));
-    const double deep = std::max({ranges.z.size(), farthest * 0x1p-20, 0x1p-140});
+    const double deep = std::max({ranges.z.size(), farthest * 0x1p-20, 0x1p-90});
     map.depth_scale = (deepest - shallowest - 8) / deep;
     map.depth_offset = shallowest - ranges.z.least * map.depth_scale;
+    map.depth_slack = 1 + 0x1p-148 * static_cast<double>(map.speed) * map.depth_scale;
     const double greatest = is_radial ? 2 : 4 * map.reach;
     return 0x1p-49 * greatest * std::max(map.scale_u, map.scale_v);
 }

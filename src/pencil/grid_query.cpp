@@ -56,16 +56,20 @@ struct Counts {
 /// Which way a ray of the pencil runs.
 enum class Heading : std::uint8_t { to_emitter, from_emitter };
 
-/// A ray as a face sees it.
+/// The place of a ray in a face.
 struct Spot {
     const Face* face;
-    double u, v;          ///< units
-    double origin_z;      ///< depth of the origin
+    std::int32_t u, v;    ///< units
     std::int32_t deepest; ///< no hit is deeper, in units
-    std::int32_t sure;    ///< what is not deeper lies on the ray's emitter's side of its far end
+    std::int32_t sure;    ///< what is not deeper is on the near side of the ray's far end
     bool is_whole;        ///< whether the ray reaches the emitter's side of all geometry
-    bool is_known;        ///< whether its place is within reach
-    Line line;
+    double origin_z;      ///< depth of the origin
+};
+
+enum class Where : std::uint8_t {
+    inside,
+    outside, ///< where nothing is
+    unknown, ///< too far away to say
 };
 
 HWY_INLINE float component(const Vec3& v, int axis) {
@@ -97,55 +101,85 @@ HWY_INLINE std::int32_t limited(double units) {
 }
 
 template <Heading heading>
-HWY_INLINE Spot locate(const Grid& grid, const Ray& ray) {
-    Spot spot;
+HWY_INLINE Where locate(const Grid& grid, const Ray& ray, Spot& spot) {
     Place place;
-    Line& line = spot.line;
-    float speed = 0;
+    double speed = 0;
+    bool is_known = false;
     if (grid.pencil.kind() == Pencil::Kind::parallel) {
         spot.face = grid.faces.data();
         const FaceMap& map = spot.face->map;
-        line.origin_u = component(ray.origin, map.axis_u);
-        line.origin_v = component(ray.origin, map.axis_v);
-        line.origin_z = component(ray.origin, map.axis);
         place = parallel_place(
             map,
-            static_cast<double>(line.origin_u),
-            static_cast<double>(line.origin_v),
-            static_cast<double>(line.origin_z)
+            static_cast<double>(component(ray.origin, map.axis_u)),
+            static_cast<double>(component(ray.origin, map.axis_v)),
+            static_cast<double>(component(ray.origin, map.axis))
         );
-        spot.is_known = std::abs(place.z) <= map.reach;
-        line.shear_u = map.shear_u;
-        line.shear_v = map.shear_v;
-        speed = map.speed;
+        speed = static_cast<double>(map.speed);
+        is_known = std::abs(place.z) <= map.reach;
     } else {
         const Vec3d rays = heading == Heading::to_emitter ? to_double(ray.origin) - grid.apex
                                                           : to_double(ray.direction);
         const std::array<double, 3> seen{rays.x, rays.y, rays.z};
         spot.face = &grid.faces[face_of(seen)];
         const FaceMap& map = spot.face->map;
-        line.origin_u = component(ray.origin, map.axis_u);
-        line.origin_v = component(ray.origin, map.axis_v);
-        line.origin_z = component(ray.origin, map.axis);
         const auto seen_along = [&](int axis) { return seen[static_cast<std::size_t>(axis)]; };
         place =
             radial_place(map, seen_along(map.axis_u), seen_along(map.axis_v), seen_along(map.axis));
+        // The rounded direction of a shadow ray is as long up to 2^-23.
+        speed = place.z;
         if constexpr (heading == Heading::from_emitter) place.z = 0;
-        spot.is_known = place.z <= map.reach;
-        const float direction_z = component(ray.direction, map.axis);
-        line.shear_u = component(ray.direction, map.axis_u) / direction_z;
-        line.shear_v = component(ray.direction, map.axis_v) / direction_z;
-        speed = std::abs(direction_z);
+        is_known = place.z <= map.reach;
     }
     const FaceMap& map = spot.face->map;
-    spot.u = place.u;
-    spot.v = place.v;
+    if (!is_known) [[unlikely]]
+        return Where::unknown;
+    if (!(place.u >= 0 && place.v >= 0 && place.u < map.size_u && place.v < map.size_v))
+        return Where::outside;
+    spot.u = static_cast<std::int32_t>(place.u);
+    spot.v = static_cast<std::int32_t>(place.v);
     spot.origin_z = place.z;
 
-    // Hits at an infinite t do not count.
-    const float t_max = std::min(ray.t_max, std::numeric_limits<float>::max());
+    constexpr double under = 1 - 0x1p-21;
+    constexpr double over = 1 + 0x1p-21;
+    constexpr std::int32_t rounding = 4;
+    const double units = depth_units_of(map, place.z);
+    const double scale = speed * map.depth_scale;
+    const double start = static_cast<double>(ray.t_min) * scale;
+    if constexpr (heading == Heading::to_emitter) {
+        spot.deepest = limited(units - start * under + map.depth_slack);
+        spot.sure = limited(units - start * over - map.depth_slack) - rounding;
+        spot.is_whole = ray.t_max >= map.whole_t;
+    } else {
+        // Hits at an infinite t do not count.
+        const float t_max = std::min(ray.t_max, std::numeric_limits<float>::max());
+        const double end = static_cast<double>(t_max) * scale;
+        spot.deepest = limited(units + end * over + map.depth_slack);
+        spot.sure = limited(units + end * under - map.depth_slack) - rounding;
+        spot.is_whole = units + start * over + map.depth_slack < shallowest - rounding;
+    }
+    return Where::inside;
+}
+
+/// The ray as a filter of triangles wants it.
+template <Heading heading>
+HWY_INLINE Line line_of(const Grid& grid, const Ray& ray, const Face& face) {
+    const FaceMap& map = face.map;
+    const float direction_z = component(ray.direction, map.axis);
+    const float speed = std::abs(direction_z);
+    Line line;
+    line.origin_u = component(ray.origin, map.axis_u);
+    line.origin_v = component(ray.origin, map.axis_v);
+    line.origin_z = component(ray.origin, map.axis);
+    if (grid.pencil.kind() == Pencil::Kind::parallel) {
+        line.shear_u = map.shear_u;
+        line.shear_v = map.shear_v;
+    } else {
+        line.shear_u = component(ray.direction, map.axis_u) / direction_z;
+        line.shear_v = component(ray.direction, map.axis_v) / direction_z;
+    }
     line.least = ray.t_min * speed;
-    line.greatest = t_max * speed;
+    // Hits at an infinite t do not count.
+    line.greatest = std::min(ray.t_max, std::numeric_limits<float>::max()) * speed;
     // t is rounded to a multiple of 2^-149; but a denormal factor would cost a hundred cycles.
     line.slack = 0x1p-120F + speed * 0x1p-100F;
     line.sign = static_cast<float>(heading == Heading::to_emitter ? -map.sign : map.sign);
@@ -153,62 +187,41 @@ HWY_INLINE Spot locate(const Grid& grid, const Ray& ray) {
     line.at_u = static_cast<std::size_t>(3 * map.axis_u);
     line.at_v = static_cast<std::size_t>(3 * map.axis_v);
     line.at_z = static_cast<std::size_t>(3 * map.axis);
-
-    constexpr double under = 1 - 0x1p-21;
-    constexpr double over = 1 + 0x1p-21;
-    constexpr std::int32_t rounding = 4;
-    const double units = depth_units_of(map, place.z);
-    const double scale = static_cast<double>(speed) * map.depth_scale;
-    const double start = static_cast<double>(ray.t_min) * scale;
-    const double slack = static_cast<double>(line.slack) * map.depth_scale;
-    if constexpr (heading == Heading::to_emitter) {
-        spot.deepest = limited(units - start * under + slack);
-        spot.sure = limited(units - start * over - slack) - rounding;
-        spot.is_whole = ray.t_max >= map.whole_t;
-    } else {
-        const double end = static_cast<double>(t_max) * scale;
-        spot.deepest = limited(units + end * over + slack);
-        spot.sure = limited(units + end * under - slack) - rounding;
-        spot.is_whole = units + start * over + slack < shallowest - rounding;
-    }
-    return spot;
+    return line;
 }
 
 /// The list that a ray must look through, or a verdict without one.
 struct Leaf {
     Cell cell;
     int shift; ///< its side is 2^shift units
-    std::int32_t u, v;
-    std::optional<Verdict> verdict;
+    bool has_verdict;
+    Verdict verdict;
 };
 
 /// `decides_hits`: whether a ray that passes two triangles may be answered "hit" at once.
 template <class Count>
 HWY_INLINE Leaf find_leaf(const Grid& grid, const Spot& spot, bool decides_hits, Count count) {
     const Face& face = *spot.face;
-    const auto u = static_cast<std::int32_t>(spot.u);
-    const auto v = static_cast<std::int32_t>(spot.v);
-    const Cell* cell =
-        face.cells + static_cast<std::ptrdiff_t>(v >> top_shift) * face.width + (u >> top_shift);
+    const Cell* cell = face.cells + static_cast<std::ptrdiff_t>(spot.v >> top_shift) * face.width +
+                       (spot.u >> top_shift);
+    const std::int32_t deepest_256 = spot.deepest >> 8;
+    const std::int32_t sure_256 = decides_hits ? spot.sure >> 8 : -1;
     int shift = top_shift;
     for (;;) {
         count.cell();
         const Cell here = *cell;
-        if ((spot.deepest >> 8) < here.near) return {here, shift, u, v, Verdict::miss};
-        if (decides_hits && (spot.sure >> 8) > here.cover) return {here, shift, u, v, Verdict::hit};
-        if ((here.link & Cell::split_mark) == 0) return {here, shift, u, v, std::nullopt};
+        const bool is_miss = deepest_256 < here.near;
+        const bool is_hit = sure_256 > here.cover;
+        if (is_miss | is_hit) return {here, shift, true, is_hit ? Verdict::hit : Verdict::miss};
+        if ((here.link & Cell::split_mark) == 0) return {here, shift, false, Verdict::miss};
         shift -= split_bits;
-        const auto child = static_cast<std::size_t>(((v >> shift) & 3) * 4 + ((u >> shift) & 3));
+        const auto child =
+            static_cast<std::size_t>(((spot.v >> shift) & 3) * 4 + ((spot.u >> shift) & 3));
         cell = reinterpret_cast<const Cell*>(
                    grid.lists + std::size_t{here.link & ~Cell::split_mark} * 16
                ) +
                child;
     }
-}
-
-HWY_INLINE bool is_inside(const Spot& spot) {
-    const FaceMap& map = spot.face->map;
-    return spot.u >= 0 && spot.v >= 0 && spot.u < map.size_u && spot.v < map.size_v;
 }
 
 HWY_INLINE void prefetch(const void* address) {
@@ -299,10 +312,11 @@ HWY_INLINE std::uint32_t touched(const std::byte* chunk, std::size_t size, const
 #endif
 
 /// Calls `visit(ids, bits)` for the chunks of references, by depth, until it returns true: those
-/// whose bit is set may be met. `deepest` is read again before each chunk.
+/// whose bit is set may be met. `spot.deepest` is read again before each chunk.
 template <class Count, class Visit>
 HWY_INLINE bool
-scan(const Grid& grid, const Leaf& leaf, const std::int32_t& deepest, Count count, Visit visit) {
+scan(const Grid& grid, const Leaf& leaf, const Spot& spot, Count count, Visit visit) {
+    const std::int32_t& deepest = spot.deepest;
     const std::byte* at = grid.lists + std::size_t{leaf.cell.link} * 16;
     prefetch(at + 64);
     prefetch(at + 128);
@@ -315,7 +329,7 @@ scan(const Grid& grid, const Leaf& leaf, const std::int32_t& deepest, Count coun
             ((static_cast<std::uint32_t>(value) << (top_shift - leaf.shift)) & 0xFFFFU) >> 1U
         );
     };
-    Probe probe{0, 0, fine(leaf.u), fine(leaf.v), 0};
+    Probe probe{0, 0, fine(spot.u), fine(spot.v), 0};
     probe.u = static_cast<std::int8_t>((probe.u_fine >> 7) - 128);
     probe.v = static_cast<std::int8_t>((probe.v_fine >> 7) - 128);
     std::size_t left = head.count();
@@ -373,28 +387,36 @@ HWY_INLINE bool is_complete(const Spot& spot, const Leaf& leaf) {
     return (spot.deepest >> 8) <= leaf.cell.cover;
 }
 
+/// Radial: triangles at the apex.
+template <class Count>
+HWY_NOINLINE bool is_near_hit(const Grid& grid, const Ray& ray, const Line& line, Count count) {
+    for (const PrimId id : grid.near)
+        if (is_hit(grid, ray, line, id, count)) return true;
+    return false;
+}
+
 template <Heading heading, class Count>
 HWY_INLINE Verdict any_hit_along(const Grid& grid, const Ray& ray, Count count) {
     count.query();
-    const Spot spot = locate<heading>(grid, ray);
-    if (!spot.is_known) return is_valid(ray) ? Verdict::unknown : Verdict::miss;
-    for (const PrimId id : grid.near)
-        if (is_hit(grid, ray, spot.line, id, count)) return Verdict::hit;
-    if (!is_inside(spot)) return Verdict::miss;
+    Spot spot;
+    const Where where = locate<heading>(grid, ray, spot);
+    if (where == Where::unknown) [[unlikely]]
+        return is_valid(ray) ? Verdict::unknown : Verdict::miss;
+    if (!grid.near.empty()) [[unlikely]] {
+        if (is_near_hit(grid, ray, line_of<heading>(grid, ray, *spot.face), count))
+            return Verdict::hit;
+    }
+    if (where == Where::outside) return Verdict::miss;
     const Leaf leaf = find_leaf(grid, spot, spot.is_whole, count);
-    if (leaf.verdict) return *leaf.verdict;
-    const bool found = scan(
-        grid,
-        leaf,
-        spot.deepest,
-        count,
-        [&](const std::byte* ids, std::uint32_t bits) HWY_ATTR {
+    if (leaf.has_verdict) return leaf.verdict;
+    const bool found =
+        scan(grid, leaf, spot, count, [&](const std::byte* ids, std::uint32_t bits) HWY_ATTR {
+            const Line line = line_of<heading>(grid, ray, *spot.face);
             do {
-                if (is_hit(grid, ray, spot.line, pop(ids, bits), count)) return true;
+                if (is_hit(grid, ray, line, pop(ids, bits), count)) return true;
             } while (bits != 0);
             return false;
-        }
-    );
+        });
     if (found) return Verdict::hit;
     return is_complete(spot, leaf) ? Verdict::miss : Verdict::unknown;
 }
@@ -466,53 +488,48 @@ private:
 template <Heading heading, class Count>
 HWY_INLINE Verdict closest_hit_along(const Grid& grid, const Ray& ray, Hit& hit, Count count) {
     count.query();
-    Spot spot = locate<heading>(grid, ray);
-    if (!spot.is_known) return is_valid(ray) ? Verdict::unknown : Verdict::miss;
-    Closest closest(grid, ray, spot.line, count);
-    const auto limit = [&]() HWY_ATTR {
-        if constexpr (heading == Heading::from_emitter)
-            spot.deepest = std::min(
-                spot.deepest,
-                depth_units(
-                    spot.face->map,
-                    spot.origin_z + static_cast<double>(closest.reach()) * (1 + 0x1p-40)
-                ) + 4
-            );
-    };
+    Spot spot;
+    const Where where = locate<heading>(grid, ray, spot);
+    if (where == Where::unknown) [[unlikely]]
+        return is_valid(ray) ? Verdict::unknown : Verdict::miss;
+    const Line line = line_of<heading>(grid, ray, *spot.face);
+    Closest closest(grid, ray, line, count);
     for (const PrimId id : grid.near)
         closest.add(id);
-    bool is_all = true;
-    if (is_inside(spot)) {
+    if (where == Where::inside) {
+        const auto limit = [&]() HWY_ATTR {
+            if constexpr (heading == Heading::from_emitter) {
+                const double reach =
+                    spot.origin_z + static_cast<double>(closest.reach()) * (1 + 0x1p-40);
+                spot.deepest =
+                    std::min(spot.deepest, limited(depth_units_of(spot.face->map, reach)) + 4);
+            }
+        };
         limit();
         const Leaf leaf = find_leaf(grid, spot, false, count);
-        if (!leaf.verdict) {
-            scan(
-                grid,
-                leaf,
-                spot.deepest,
-                count,
-                [&](const std::byte* ids, std::uint32_t bits) HWY_ATTR {
-                    while (bits != 0)
-                        closest.add(pop(ids, bits));
-                    limit();
-                    return false;
-                }
-            );
-            is_all = is_complete(spot, leaf);
+        if (!leaf.has_verdict) {
+            scan(grid, leaf, spot, count, [&](const std::byte* ids, std::uint32_t bits) HWY_ATTR {
+                while (bits != 0)
+                    closest.add(pop(ids, bits));
+                limit();
+                return false;
+            });
+            if (!is_complete(spot, leaf)) return Verdict::unknown;
         }
     }
-    if (!is_all) return Verdict::unknown;
     return closest.finish(hit) ? Verdict::hit : Verdict::miss;
 }
 
 template <Heading heading>
 Verdict all_hits_along(const Grid& grid, const Ray& ray, FunctionRef<void(const Hit&)> visit) {
-    const Spot spot = locate<heading>(grid, ray);
-    if (!spot.is_known) return is_valid(ray) ? Verdict::unknown : Verdict::miss;
+    Spot spot;
+    const Where where = locate<heading>(grid, ray, spot);
+    if (where == Where::unknown) return is_valid(ray) ? Verdict::unknown : Verdict::miss;
+    const Line line = line_of<heading>(grid, ray, *spot.face);
     bool found = false;
     const auto add = [&](PrimId id) HWY_ATTR {
         if (id == ray.excluded) return;
-        if (cross(spot.line, record(grid, id)).finding == Finding::miss) return;
+        if (cross(line, record(grid, id)).finding == Finding::miss) return;
         if (const auto hit = decide(grid, ray, id, ray.t_max)) {
             found = true;
             visit(*hit);
@@ -520,24 +537,27 @@ Verdict all_hits_along(const Grid& grid, const Ray& ray, FunctionRef<void(const 
     };
     for (const PrimId id : grid.near)
         add(id);
-    const auto verdict = [&] { return found ? Verdict::hit : Verdict::miss; };
-    if (!is_inside(spot)) return verdict();
-    const Leaf leaf = find_leaf(grid, spot, false, NoCounts{});
-    if (leaf.verdict) return verdict();
-    scan(
-        grid,
-        leaf,
-        spot.deepest,
-        NoCounts{},
-        [&](const std::byte* ids, std::uint32_t bits) HWY_ATTR {
-            while (bits != 0) {
-                const PrimId id = pop(ids, bits);
-                if (std::find(grid.near.begin(), grid.near.end(), id) == grid.near.end()) add(id);
-            }
-            return false;
+    if (where == Where::inside) {
+        const Leaf leaf = find_leaf(grid, spot, false, NoCounts{});
+        if (!leaf.has_verdict) {
+            scan(
+                grid,
+                leaf,
+                spot,
+                NoCounts{},
+                [&](const std::byte* ids, std::uint32_t bits) HWY_ATTR {
+                    while (bits != 0) {
+                        const PrimId id = pop(ids, bits);
+                        if (std::find(grid.near.begin(), grid.near.end(), id) == grid.near.end())
+                            add(id);
+                    }
+                    return false;
+                }
+            );
+            if (!is_complete(spot, leaf)) return Verdict::unknown;
         }
-    );
-    return is_complete(spot, leaf) ? verdict() : Verdict::unknown;
+    }
+    return found ? Verdict::hit : Verdict::miss;
 }
 
 Heading heading_of(const Grid& grid, const Ray& ray) {
