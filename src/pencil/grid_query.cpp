@@ -198,12 +198,16 @@ struct Leaf {
     Verdict verdict;
 };
 
+HWY_INLINE const Cell* top_cell(const Spot& spot) {
+    const Face& face = *spot.face;
+    return face.cells + static_cast<std::ptrdiff_t>(spot.v >> top_shift) * face.width +
+           (spot.u >> top_shift);
+}
+
 /// `decides_hits`: whether a ray that passes two triangles may be answered "hit" at once.
 template <class Count>
 HWY_INLINE Leaf find_leaf(const Grid& grid, const Spot& spot, bool decides_hits, Count count) {
-    const Face& face = *spot.face;
-    const Cell* cell = face.cells + static_cast<std::ptrdiff_t>(spot.v >> top_shift) * face.width +
-                       (spot.u >> top_shift);
+    const Cell* cell = top_cell(spot);
     const std::int32_t deepest_256 = spot.deepest >> 8;
     const std::int32_t sure_256 = decides_hits ? spot.sure >> 8 : -1;
     int shift = top_shift;
@@ -311,19 +315,50 @@ HWY_INLINE std::uint32_t touched(const std::byte* chunk, std::size_t size, const
 
 #endif
 
-/// Calls `visit(ids, bits)` for the chunks of references, by depth, until it returns true: those
-/// whose bit is set may be met. `spot.deepest` is read again before each chunk.
-template <class Count, class Visit>
-HWY_INLINE bool
-scan(const Grid& grid, const Leaf& leaf, const Spot& spot, Count count, Visit visit) {
-    const std::int32_t& deepest = spot.deepest;
+/// Asks for the start of a leaf's list ahead of its use.
+HWY_INLINE void prefetch_list(const Grid& grid, const Leaf& leaf) {
     const std::byte* at = grid.lists + std::size_t{leaf.cell.link} * 16;
-    prefetch(at + 64);
-    prefetch(at + 128);
-    prefetch(at + 192);
+    for (std::size_t line = 0; line < 4; ++line)
+        prefetch(at + 64 * line);
+}
+
+/// A query's way through a list.
+struct Walk {
+    const std::byte* at; ///< the chunk
+    std::size_t left;    ///< references from there on
+    std::int32_t base;
+    int shift;
+    Probe probe;
+
+    /// Sets how deep hits may be; whether a reference is as near.
+    [[nodiscard]] HWY_INLINE bool aim(std::int32_t deepest_hit) {
+        if (deepest_hit < base) return false;
+        probe.depth = static_cast<std::int16_t>(std::min((deepest_hit - base) >> shift, 32767));
+        return true;
+    }
+
+    [[nodiscard]] HWY_INLINE std::size_t size() const { return std::min(left, chunk_size); }
+
+    [[nodiscard]] HWY_INLINE const std::byte* ids() const { return at + 10 * padded(size()); }
+
+    [[nodiscard]] HWY_INLINE std::uint32_t candidates() const { return touched(at, size(), probe); }
+
+    /// Goes to the next chunk, if one may matter.
+    [[nodiscard]] HWY_INLINE bool advance() {
+        if (left <= chunk_size) return false;
+        left -= chunk_size;
+        at += chunk_bytes(chunk_size);
+        std::int16_t least = 0;
+        std::memcpy(&least, at, sizeof least);
+        at += chunk_head_bytes;
+        return least <= probe.depth;
+    }
+};
+
+HWY_INLINE Walk walk(const Grid& grid, const Leaf& leaf, const Spot& spot) {
+    const std::byte* const at = grid.lists + std::size_t{leaf.cell.link} * 16;
     ListHead head;
     std::memcpy(&head, at, sizeof head);
-    at += sizeof head;
     const auto fine = [&](std::int32_t value) {
         return static_cast<std::int16_t>(
             ((static_cast<std::uint32_t>(value) << (top_shift - leaf.shift)) & 0xFFFFU) >> 1U
@@ -332,23 +367,7 @@ scan(const Grid& grid, const Leaf& leaf, const Spot& spot, Count count, Visit vi
     Probe probe{0, 0, fine(spot.u), fine(spot.v), 0};
     probe.u = static_cast<std::int8_t>((probe.u_fine >> 7) - 128);
     probe.v = static_cast<std::int8_t>((probe.v_fine >> 7) - 128);
-    std::size_t left = head.count();
-    count.list(left);
-    for (;;) {
-        if (deepest < head.base) return false;
-        probe.depth =
-            static_cast<std::int16_t>(std::min((deepest - head.base) >> head.shift(), 32767));
-        const std::size_t size = std::min(left, chunk_size);
-        const std::uint32_t bits = touched(at, size, probe);
-        if (bits != 0 && visit(at + 10 * padded(size), bits)) return true;
-        left -= size;
-        if (left == 0) return false;
-        at += chunk_bytes(chunk_size);
-        std::int16_t least = 0;
-        std::memcpy(&least, at, sizeof least);
-        if (least > probe.depth) return false;
-        at += chunk_head_bytes;
-    }
+    return {at + sizeof head, head.count(), head.base, head.shift(), probe};
 }
 
 HWY_INLINE const float* record(const Grid& grid, PrimId id) {
@@ -395,10 +414,29 @@ HWY_NOINLINE bool is_near_hit(const Grid& grid, const Ray& ray, const Line& line
     return false;
 }
 
+/// any_hit in a leaf's list.
+template <Heading heading, class Count>
+HWY_INLINE Verdict
+look_through(const Grid& grid, const Ray& ray, const Spot& spot, const Leaf& leaf, Count count) {
+    Walk way = walk(grid, leaf, spot);
+    count.list(way.left);
+    if (!way.aim(spot.deepest)) return Verdict::miss;
+    do {
+        std::uint32_t bits = way.candidates();
+        if (bits == 0) continue;
+        const Line line = line_of<heading>(grid, ray, *spot.face);
+        const std::byte* const ids = way.ids();
+        do {
+            if (is_hit(grid, ray, line, pop(ids, bits), count)) return Verdict::hit;
+        } while (bits != 0);
+    } while (way.advance());
+    return is_complete(spot, leaf) ? Verdict::miss : Verdict::unknown;
+}
+
 template <Heading heading, class Count>
 HWY_INLINE Verdict any_hit_along(const Grid& grid, const Ray& ray, Count count) {
     count.query();
-    Spot spot;
+    Spot spot{};
     const Where where = locate<heading>(grid, ray, spot);
     if (where == Where::unknown) [[unlikely]]
         return is_valid(ray) ? Verdict::unknown : Verdict::miss;
@@ -409,16 +447,8 @@ HWY_INLINE Verdict any_hit_along(const Grid& grid, const Ray& ray, Count count) 
     if (where == Where::outside) return Verdict::miss;
     const Leaf leaf = find_leaf(grid, spot, spot.is_whole, count);
     if (leaf.has_verdict) return leaf.verdict;
-    const bool found =
-        scan(grid, leaf, spot, count, [&](const std::byte* ids, std::uint32_t bits) HWY_ATTR {
-            const Line line = line_of<heading>(grid, ray, *spot.face);
-            do {
-                if (is_hit(grid, ray, line, pop(ids, bits), count)) return true;
-            } while (bits != 0);
-            return false;
-        });
-    if (found) return Verdict::hit;
-    return is_complete(spot, leaf) ? Verdict::miss : Verdict::unknown;
+    prefetch_list(grid, leaf);
+    return look_through<heading>(grid, ray, spot, leaf, count);
 }
 
 /// The closest hit so far, decided or not yet.
@@ -430,27 +460,29 @@ public:
         best_.t = ray.t_max;
     }
 
-    HWY_INLINE void add(PrimId id) {
-        if (id == ray_.excluded || id == pending_ || id == best_.prim) return;
+    /// Whether `reach` became shorter.
+    HWY_INLINE bool add(PrimId id) {
+        if (id == ray_.excluded || id == pending_ || id == best_.prim) return false;
         count_.prim();
         const Crossing crossing = cross(line_, record(grid_, id));
-        if (crossing.finding == Finding::miss) return;
+        if (crossing.finding == Finding::miss) return false;
+        const float before = reach_;
         if (crossing.finding == Finding::doubt) {
             decide_now(id);
-            return;
+            return reach_ < before;
         }
-        if (crossing.depth - crossing.error > reach_) return;
-        if (pending_ != no_prim) {
-            if (crossing.depth + crossing.error >= pending_depth_.depth - pending_depth_.error) {
-                decide_now(pending_);
-                pending_ = no_prim;
-                decide_now(id);
-                return;
-            }
+        if (crossing.depth - crossing.error > reach_) return false;
+        if (pending_ != no_prim &&
+            crossing.depth + crossing.error >= pending_depth_.depth - pending_depth_.error) {
+            decide_now(pending_);
+            pending_ = no_prim;
+            decide_now(id);
+            return reach_ < before;
         }
         pending_ = id;
         pending_depth_ = crossing;
         reach_ = std::min(reach_, crossing.depth + crossing.error);
+        return reach_ < before;
     }
 
     /// No closer hit is farther along the ray.
@@ -488,7 +520,7 @@ private:
 template <Heading heading, class Count>
 HWY_INLINE Verdict closest_hit_along(const Grid& grid, const Ray& ray, Hit& hit, Count count) {
     count.query();
-    Spot spot;
+    Spot spot{};
     const Where where = locate<heading>(grid, ray, spot);
     if (where == Where::unknown) [[unlikely]]
         return is_valid(ray) ? Verdict::unknown : Verdict::miss;
@@ -508,12 +540,21 @@ HWY_INLINE Verdict closest_hit_along(const Grid& grid, const Ray& ray, Hit& hit,
         limit();
         const Leaf leaf = find_leaf(grid, spot, false, count);
         if (!leaf.has_verdict) {
-            scan(grid, leaf, spot, count, [&](const std::byte* ids, std::uint32_t bits) HWY_ATTR {
-                while (bits != 0)
-                    closest.add(pop(ids, bits));
-                limit();
-                return false;
-            });
+            prefetch_list(grid, leaf);
+            Walk way = walk(grid, leaf, spot);
+            count.list(way.left);
+            bool is_open = way.aim(spot.deepest);
+            while (is_open) {
+                std::uint32_t bits = way.candidates();
+                const std::byte* const ids = way.ids();
+                while (bits != 0 && is_open) {
+                    if (!closest.add(pop(ids, bits))) continue;
+                    limit();
+                    is_open = way.aim(spot.deepest);
+                    if (bits != 0) bits &= way.candidates();
+                }
+                is_open = is_open && way.advance();
+            }
             if (!is_complete(spot, leaf)) return Verdict::unknown;
         }
     }
@@ -522,7 +563,7 @@ HWY_INLINE Verdict closest_hit_along(const Grid& grid, const Ray& ray, Hit& hit,
 
 template <Heading heading>
 Verdict all_hits_along(const Grid& grid, const Ray& ray, FunctionRef<void(const Hit&)> visit) {
-    Spot spot;
+    Spot spot{};
     const Where where = locate<heading>(grid, ray, spot);
     if (where == Where::unknown) return is_valid(ray) ? Verdict::unknown : Verdict::miss;
     const Line line = line_of<heading>(grid, ray, *spot.face);
@@ -540,20 +581,18 @@ Verdict all_hits_along(const Grid& grid, const Ray& ray, FunctionRef<void(const 
     if (where == Where::inside) {
         const Leaf leaf = find_leaf(grid, spot, false, NoCounts{});
         if (!leaf.has_verdict) {
-            scan(
-                grid,
-                leaf,
-                spot,
-                NoCounts{},
-                [&](const std::byte* ids, std::uint32_t bits) HWY_ATTR {
-                    while (bits != 0) {
-                        const PrimId id = pop(ids, bits);
-                        if (std::find(grid.near.begin(), grid.near.end(), id) == grid.near.end())
-                            add(id);
-                    }
-                    return false;
+            Walk way = walk(grid, leaf, spot);
+            bool is_open = way.aim(spot.deepest);
+            while (is_open) {
+                std::uint32_t bits = way.candidates();
+                const std::byte* const ids = way.ids();
+                while (bits != 0) {
+                    const PrimId id = pop(ids, bits);
+                    if (std::find(grid.near.begin(), grid.near.end(), id) == grid.near.end())
+                        add(id);
                 }
-            );
+                is_open = way.advance();
+            }
             if (!is_complete(spot, leaf)) return Verdict::unknown;
         }
     }
@@ -608,19 +647,98 @@ Verdict AllHits(const Grid& grid, const Ray& ray, FunctionRef<void(const Hit&)> 
                : all_hits_along<Heading::from_emitter>(grid, ray, visit);
 }
 
-void OccludedBatch(const Grid& grid, const PointBatch& batch, Verdict* verdicts) {
-    for (std::size_t i = 0; i < batch.count; ++i)
-        verdicts[i] = Occluded(
-            grid,
-            batch.points[i],
-            batch.t_min,
-            batch.excluded == nullptr ? no_prim : batch.excluded[i]
-        );
+/// Rays of a batch that are answered together: while one waits for memory, the others go on.
+constexpr std::size_t together = 16;
+
+/// any_hit for a few rays toward the emitter: `ray_at(i)`, i < count <= together.
+template <class RayAt>
+HWY_INLINE void
+any_hit_together(const Grid& grid, std::size_t count, const RayAt& ray_at, Verdict* verdicts) {
+    std::array<Spot, together> spots;
+    std::array<Leaf, together> leaves;
+    std::array<std::uint8_t, together> open{};
+    constexpr auto heading = Heading::to_emitter;
+
+    std::size_t left = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const Ray ray = ray_at(i);
+        const Where where = locate<heading>(grid, ray, spots[i]);
+        verdicts[i] = Verdict::miss;
+        if (where == Where::unknown && is_valid(ray)) verdicts[i] = Verdict::unknown;
+        if (where != Where::inside) continue;
+        open[left++] = static_cast<std::uint8_t>(i);
+        prefetch(top_cell(spots[i]));
+    }
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < left; ++k) {
+        const std::size_t i = open[k];
+        leaves[i] = find_leaf(grid, spots[i], spots[i].is_whole, NoCounts{});
+        verdicts[i] = leaves[i].verdict;
+        prefetch_list(grid, leaves[i]);
+        open[kept] = static_cast<std::uint8_t>(i);
+        kept += static_cast<std::size_t>(!leaves[i].has_verdict);
+    }
+    left = kept;
+    kept = 0;
+    for (std::size_t k = 0; k < left; ++k) {
+        const std::size_t i = open[k];
+        Walk way = walk(grid, leaves[i], spots[i]);
+        std::uint32_t bits = way.aim(spots[i].deepest) ? way.candidates() : 0;
+        if (bits != 0) {
+            const float* const first = record(grid, pop(way.ids(), bits));
+            prefetch(first);
+            prefetch(first + record_floats - 1);
+        } else if (way.left <= chunk_size && is_complete(spots[i], leaves[i])) {
+            continue;
+        }
+        open[kept++] = static_cast<std::uint8_t>(i);
+    }
+    for (std::size_t k = 0; k < kept; ++k) {
+        const std::size_t i = open[k];
+        verdicts[i] = look_through<heading>(grid, ray_at(i), spots[i], leaves[i], NoCounts{});
+    }
 }
 
-void AnyHitBatch(const Grid& grid, const Ray* rays, std::size_t count, Verdict* verdicts) {
-    for (std::size_t i = 0; i < count; ++i)
-        verdicts[i] = AnyHit(grid, rays[i]);
+void OccludedBatch(const Grid& grid, const PointBatch& batch, Verdict* verdicts) {
+    const auto ray_at = [&](std::size_t i) {
+        return grid.pencil.shadow_ray(
+            batch.points[i], batch.t_min, batch.excluded == nullptr ? no_prim : batch.excluded[i]
+        );
+    };
+    for (std::size_t first = 0; first < batch.count; first += together) {
+        const std::size_t count = std::min(together, batch.count - first);
+        if (grid.near.empty()) {
+            any_hit_together(
+                grid,
+                count,
+                [&](std::size_t i) HWY_ATTR { return ray_at(first + i); },
+                verdicts + first
+            );
+            continue;
+        }
+        for (std::size_t i = first; i < first + count; ++i)
+            verdicts[i] = any_hit_along<Heading::to_emitter>(grid, ray_at(i), NoCounts{});
+    }
+}
+
+void AnyHitBatch(const Grid& grid, const Ray* rays, std::size_t batch_size, Verdict* verdicts) {
+    for (std::size_t first = 0; first < batch_size; first += together) {
+        const std::size_t count = std::min(together, batch_size - first);
+        bool are_shadows = grid.near.empty();
+        for (std::size_t i = first; i < first + count; ++i)
+            are_shadows = are_shadows && heading_of(grid, rays[i]) == Heading::to_emitter;
+        if (are_shadows) {
+            any_hit_together(
+                grid,
+                count,
+                [&](std::size_t i) HWY_ATTR { return rays[first + i]; },
+                verdicts + first
+            );
+            continue;
+        }
+        for (std::size_t i = first; i < first + count; ++i)
+            verdicts[i] = any_hit_of(grid, rays[i], NoCounts{});
+    }
 }
 
 const Kernels kernels{
