@@ -88,7 +88,7 @@ private:
         measure(row, ours, peer, {});
         if (row.count == 0) return row;
         if (effort_.is_thorough) {
-            row.ratio_sorted = sorted_ratio();
+            measure_sorted(row);
             const auto robust = [&] { race_.trace_peer(*contest_.peers.robust, {}); };
             row.ratio_robust = timed(ours, robust).ratio;
         }
@@ -132,12 +132,13 @@ private:
     }
 
     /// One ray per call, of rays that lie in order.
-    [[nodiscard]] double sorted_ratio() const {
+    void measure_sorted(BenchRow& row) const {
         const ClassRays in_order = sorted(rays_);
         const Race<Answer> race(contest_, in_order, machine_);
-        return timed(
-                   [&] { race.trace_singly(); }, [&] { race.trace_peer(contest_.peers.high, {}); }
-        ).ratio;
+        const auto ours = [&] { race.trace_singly(); };
+        const auto peer = [&] { race.trace_peer(contest_.peers.high, {}); };
+        row.ratio_sorted = timed(ours, peer).ratio;
+        row.mismatches += race.wrong_answers();
     }
 
     template <class First, class Second>
