@@ -8,6 +8,7 @@
 #include <raywise/geometry/sampling.hpp>
 #include <raywise/pencil/pencil.hpp>
 #include <raywise/toplevel/open_place.hpp>
+#include <raywise/toplevel/pencil_of.hpp>
 
 #include <algorithm>
 #include <array>
@@ -329,13 +330,6 @@ emitter_area(const Place& place, RayClass rays, std::uint64_t seed, std::size_t 
     return InfluenceArea::radial(area_name(rays, number), lamp);
 }
 
-/// The middle of an area's rays.
-Pencil pencil_of(const InfluenceArea& area) {
-    if (const auto* parallel = std::get_if<ParallelDistribution>(&area.distribution))
-        return Pencil::parallel(to_float(parallel->params().frame.forward));
-    return Pencil::radial(to_float(std::get<RadialDistribution>(area.distribution).params().eye));
-}
-
 /// The shadow rays of one sun or lamp.
 class Emitter {
 public:
@@ -343,7 +337,7 @@ public:
         : rays_(rays)
         , seed_(seed_of(seed, Stream::light, static_cast<std::size_t>(rays) * 64 + number))
         , area_(emitter_area(place, rays, seed, number))
-        , pencil_(pencil_of(area_)) {
+        , pencil_(central_pencil_of(area_).value()) {
         if (const auto* radial = std::get_if<RadialDistribution>(&area_.distribution)) {
             radius_ = radial->params().radius;
         } else {

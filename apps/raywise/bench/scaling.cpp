@@ -121,10 +121,8 @@ std::vector<ThreadRow> bench_threads(
     bench.measure("global tree", [&](const Executor& executor) {
         static_cast<void>(build_accelerator(scene, {}, {}, executor, progress));
     });
-    const auto& parallel = std::get<ParallelDistribution>(made.areas.front().distribution);
-    const Pencil pencil = Pencil::parallel(to_float(parallel.params().frame.forward));
     bench.measure("pencil grid", [&](const Executor& executor) {
-        static_cast<void>(build_pencil_grid(scene.view(), pencil, {}, executor));
+        static_cast<void>(build_pencil_grid(scene.view(), area.pencil(), {}, executor));
     });
     bench.measure("sun rays", [&](const Executor& executor) {
         area.any_hits(sun, {occluded.get(), sun.size()}, executor);

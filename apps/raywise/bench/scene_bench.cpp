@@ -4,13 +4,13 @@
 #include <raywise/analysis/statistics.hpp>
 #include <raywise/analysis/stopwatch.hpp>
 #include <raywise/pencil/pencil_grid.hpp>
+#include <raywise/toplevel/pencil_of.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <span>
 #include <utility>
-#include <variant>
 
 namespace raywise::app {
 
@@ -83,7 +83,7 @@ private:
         const auto emitters = params_.effort.is_thorough ? all : all.last(1);
         GridCost cost;
         for (const EmitterRays& of_emitter : emitters) {
-            const Pencil pencil = pencil_of(area_named(of_emitter.area));
+            const Pencil pencil = pencil_of(area_named(of_emitter.area)).value();
             const Stopwatch quick;
             const PencilGrid grid = build_pencil_grid(scene_.view(), pencil, {}, machine_.build);
             cost.all_ms += quick.milliseconds();
@@ -125,13 +125,6 @@ private:
             workload_.areas.end(),
             [&](const InfluenceArea& area) { return area.name == name; }
         );
-    }
-
-    static Pencil pencil_of(const InfluenceArea& area) {
-        if (const auto* sun = std::get_if<ParallelDistribution>(&area.distribution))
-            return Pencil::parallel(to_float(sun->params().frame.forward));
-        const auto& lamp = std::get<RadialDistribution>(area.distribution);
-        return Pencil::radial(to_float(lamp.params().eye));
     }
 
     Peers build_peers() {

@@ -2,8 +2,8 @@
 
 #include <raywise/core/error.hpp>
 #include <raywise/core/hash.hpp>
-#include <raywise/pencil/pencil.hpp>
 #include <raywise/scene/generate.hpp>
+#include <raywise/toplevel/pencil_of.hpp>
 
 #include <gtest/gtest.h>
 
@@ -57,14 +57,7 @@ TEST(MakeWorkload, ExactClassesLieInThePencilBitForBit) {
     for (const ClassRays& rays : workload.classes) {
         if (kind_of(rays.rays) != RayKind::exact) continue;
         for (const EmitterRays& of_emitter : rays.emitters) {
-            const InfluenceArea& area = area_named(workload, of_emitter.area);
-            const auto* sun = std::get_if<ParallelDistribution>(&area.distribution);
-            const Pencil pencil =
-                sun != nullptr
-                    ? Pencil::parallel(to_float(sun->params().frame.forward))
-                    : Pencil::radial(
-                          to_float(std::get<RadialDistribution>(area.distribution).params().eye)
-                      );
+            const Pencil pencil = pencil_of(area_named(workload, of_emitter.area)).value();
             for (const Ray& ray : of_emitter.rays)
                 ASSERT_TRUE(pencil.holds(ray)) << of_emitter.area;
         }
