@@ -35,33 +35,46 @@ inline void set_depths(Edges& edges, const Drawn& t) {
     edges.depth_hi = static_cast<float>(t.depth_hi + error + 0x1p-23 * std::abs(t.depth_hi));
 }
 
+/// The corners of a flat triangle relative to a tile's center, each within 2^-24 of itself.
+struct FlatCorners {
+    std::array<float, 3> x, y;
+    float greatest; ///< coordinate by magnitude
+};
+
+inline FlatCorners flat_corners(const Drawn& t, const Tile& tile) {
+    FlatCorners corners; // NOLINT(*-member-init)
+    corners.greatest = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        corners.x[i] = static_cast<float>(t.u[i] - tile.u);
+        corners.y[i] = static_cast<float>(t.v[i] - tile.v);
+        corners.greatest = std::max(
+            corners.greatest, std::max(std::abs(corners.x[i]), std::abs(corners.y[i]))
+        );
+    }
+    return corners;
+}
+
 /// For a flat triangle of ordinary size; false when float's range does not do.
 ///
 /// With e = 2^-24, M the largest coordinate of a vertex and L that of a vertex or a ray, both
 /// relative to the tile: vertices are within e M, rays within e L, and each of n x + k costs at
-/// most 7 roundings of terms up to 2 M L and 2 M^2; summed, under 64 e M L. `noise` is what doubles
-/// are off, a ray is `aside` of where it is seen.
-inline bool
-make_flat_edges(Edges& edges, const Drawn& t, const Tile& tile, double noise, double aside) {
-    std::array<float, 3> x{}, y{};
-    float across = 0;
-    const float side = t.side > 0 ? 1.0F : -1.0F;
-    for (std::size_t i = 0; i < 3; ++i) {
-        x[i] = static_cast<float>(t.u[i] - tile.u);
-        y[i] = static_cast<float>(t.v[i] - tile.v);
-        across = std::max(across, std::max(std::abs(x[i]), std::abs(y[i])));
-        x[i] *= side;
-    }
+/// most 7 roundings of terms up to 2 M L and 2 M^2; summed, under 64 e M L. Rays and vertices are
+/// `aside` of where they are seen, at most.
+inline bool make_flat_edges(
+    Edges& edges, const Drawn& t, const Tile& tile, const FlatCorners& corners, float aside
+) {
+    const auto& [x, y, across] = corners;
     const float greatest = std::max(across, std::max(tile.half_u, tile.half_v));
     if (!(across > 0x1p-50F && greatest < 0x1p50F)) return false;
-    const float bound = across * greatest * (80 * 0x1p-24F) +
-                        greatest * static_cast<float>(24 * noise + 4 * aside) + 0x1p-120F;
+    const float bound =
+        across * greatest * (80 * 0x1p-24F) + greatest * (24 * aside) + 0x1p-120F;
+    const float side = t.side > 0 ? 1.0F : -1.0F;
     for (std::size_t i = 0; i < 3; ++i) {
         const std::size_t a = (i + 1) % 3;
         const std::size_t b = (i + 2) % 3;
         edges.u[i] = (y[a] - y[b]) * side;
-        edges.v[i] = x[b] - x[a];
-        edges.k[i] = x[a] * y[b] - y[a] * x[b] + bound;
+        edges.v[i] = (x[b] - x[a]) * side;
+        edges.k[i] = (x[a] * y[b] - y[a] * x[b]) * side + bound;
     }
     edges.sure = 2.01F * bound;
     edges.bound = bound;
@@ -75,7 +88,7 @@ make_flat_edges(Edges& edges, const Drawn& t, const Tile& tile, double noise, do
 /// For any triangle. Each coordinate of a vertex is within `noise` of the exact one; rounding n and
 /// k to float and evaluating n x + k costs at most 6 e of each |n x| and 4 e of |k|.
 template <bool is_radial>
-Edges make_edges(const Drawn& t, const Tile& tile, double aside) {
+void make_edges(Edges& edges, const Drawn& t, const Tile& tile, double aside) {
     const auto half_u = static_cast<double>(tile.half_u);
     const auto half_v = static_cast<double>(tile.half_v);
     std::array<double, 3> x{}, y{}, h{};
@@ -108,8 +121,8 @@ Edges make_edges(const Drawn& t, const Tile& tile, double aside) {
     }
     const double volume = h[0] * k[0] + h[1] * k[1] + h[2] * k[2];
     const double volume_error = 8 * std::max(along, is_radial ? across : 0) * k_error;
-    Edges edges{};
     int side = t.side;
+    edges.is_flat = false;
     edges.one_sided = true;
     if constexpr (is_radial) {
         side = volume > 0 ? 1 : -1;
@@ -142,7 +155,6 @@ Edges make_edges(const Drawn& t, const Tile& tile, double aside) {
     edges.sure = edges.bound * (edges.one_sided ? 2.01F : 1.01F);
     edges.volume = volume * scale;
     set_depths(edges, t);
-    return edges;
 }
 
 /// The range of x in which all edges may be positive for some y in [lo, hi]; false: nowhere.

@@ -16,6 +16,7 @@
 #include <raywise/geometry/ray_triangle.hpp>
 
 #include <hwy/foreach_target.h> // first: includes this file once per instruction set
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include <algorithm>
@@ -23,6 +24,7 @@
 #include <atomic>
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -57,6 +59,7 @@ private:
 template <bool is_radial, bool is_closest>
 class Drawing {
 public:
+    // NOLINTNEXTLINE(*-member-init): of the arrays, only what is counted is read
     explicit Drawing(const Raster& raster) : raster_(raster), tiles_(raster.tiles) {
         for (const Window& window : tiles_.windows) {
             brink_ = std::max(brink_, window.brink);
@@ -64,19 +67,19 @@ public:
         }
     }
 
+    /// Soon, or at the latest by `finish`.
     void draw(PrimId id) {
         const Triangle triangle = raster_.triangles[id];
-        Drawn drawn; // NOLINT(*-member-init): filled face by face
-        drawn.id = id;
         for (std::size_t f = 0; f < tiles_.faces.size(); ++f) {
             const Window& window = tiles_.windows[f];
             if (window.is_empty()) continue;
+            if (drawn_count_ == drawn_.size()) finish();
+            Drawn& drawn = drawn_[drawn_count_];
             const Face& face = tiles_.faces[f];
-            drawn.p = {
-                face.point<is_radial>(triangle.v0),
-                face.point<is_radial>(triangle.v1),
-                face.point<is_radial>(triangle.v2)
-            };
+            drawn.id = id;
+            drawn.p[0] = face.point<is_radial>(triangle.v0);
+            drawn.p[1] = face.point<is_radial>(triangle.v1);
+            drawn.p[2] = face.point<is_radial>(triangle.v2);
             measure<is_radial>(drawn);
             if (!has_finite_corners(drawn)) return;
             if constexpr (is_radial) {
@@ -87,11 +90,18 @@ public:
                     return;
                 }
                 if (std::max(std::max(drawn.p[0].h, drawn.p[1].h), drawn.p[2].h) <= 0) continue;
-                if (show_radial(drawn, window)) draw_face(drawn, face, window);
+                if (!show_radial(drawn, window)) continue;
             } else {
-                if (show_parallel(drawn, window, triangle)) draw_face(drawn, face, window);
+                if (!show_parallel(drawn, window, triangle)) continue;
             }
+            find_tiles(drawn, f);
+            ++drawn_count_;
         }
+    }
+
+    void finish() {
+        shoot_all();
+        drawn_count_ = 0;
     }
 
 private:
@@ -170,30 +180,81 @@ private:
         return true;
     }
 
-    static Edges edges_of(const Drawn& t, const Tile& tile) {
-        double aside = 0;
+    static double aside_of(const Drawn& t, double reach) {
         if constexpr (is_radial) {
-            if (tile.start > 0) aside = deviation(t, static_cast<double>(tile.start));
+            if (reach > 0) return deviation(t, reach);
         }
-        if (t.is_flat) {
-            Edges edges; // NOLINT(*-member-init): filled when it is flat
-            const double center = std::max(std::abs(tile.u), std::abs(tile.v));
-            const double noise = 0x1p-49 * (is_radial ? 64 : t.size + 2 * center);
-            if (make_flat_edges(edges, t, tile, noise, aside)) return edges;
-        }
-        Edges edges = make_edges<is_radial>(t, tile, aside);
-        edges.is_flat = false;
-        return edges;
+        return 0;
     }
 
-    void draw_face(const Drawn& t, const Face& face, const Window& window) {
+    /// What doubles are off on a tile, generously.
+    static double noise_of(const Drawn& t, const Tile& tile) {
+        if constexpr (is_radial) return 0x1p-42;
+        return 0x1p-48 * (t.size + std::abs(tile.u) + std::abs(tile.v));
+    }
+
+    /// One tile that a triangle may be drawn on.
+    struct Shot {
+        const Drawn* drawn;
+        Tile* tile;
+        std::uint32_t face;
+        std::uint32_t column_lo, column_hi, row_lo, row_hi; ///< bins
+        Edges edges;
+    };
+
+    void add_shot(const Drawn& t, std::size_t face, Tile& tile) {
+        if (shot_count_ == shots_.size()) shoot_all();
+        hwy::Prefetch(&tile);
+        hwy::Prefetch(reinterpret_cast<const std::byte*>(&tile) + 64);
+        Shot& shot = shots_[shot_count_++];
+        shot.drawn = &t;
+        shot.tile = &tile;
+        shot.face = static_cast<std::uint32_t>(face);
+    }
+
+    /// In three passes, so that the memory of each step is on its way while others are worked on.
+    void shoot_all() {
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < shot_count_; ++i) {
+            Shot& shot = shots_[count];
+            shot.drawn = shots_[i].drawn;
+            shot.tile = shots_[i].tile;
+            shot.face = shots_[i].face;
+            if (!aim(shot)) continue;
+            hwy::Prefetch(first_start(shot));
+            ++count;
+        }
+        for (std::size_t i = 0; i < count; ++i) {
+            const Tile& tile = *shots_[i].tile;
+            std::size_t slot = tile.first;
+            {
+                const TileLock lock(*shots_[i].tile, raster_.is_shared);
+                slot += *first_start(shots_[i]);
+            }
+            hwy::Prefetch(&tiles_.near[slot]);
+            hwy::Prefetch(&tiles_.far[slot]);
+            hwy::Prefetch(&tiles_.u[slot]);
+            hwy::Prefetch(&tiles_.v[slot]);
+        }
+        for (std::size_t i = 0; i < count; ++i)
+            shoot(shots_[i]);
+        shot_count_ = 0;
+    }
+
+    [[nodiscard]] const std::uint32_t* first_start(const Shot& shot) const {
+        const Tile& tile = *shot.tile;
+        return &tiles_.bin_starts[tile.bins + shot.row_lo * tile.columns + shot.column_lo];
+    }
+
+    void find_tiles(const Drawn& t, std::size_t face) {
+        const Window& window = tiles_.windows[face];
         const std::uint32_t column_lo = window.column(t.u_lo), column_hi = window.column(t.u_hi);
         const std::uint32_t row_lo = window.row(t.v_lo), row_hi = window.row(t.v_hi);
         Tile* const tiles = tiles_.tiles.data() + window.first_tile;
         if (column_hi - column_lo < 2 || row_lo == row_hi) {
             for (std::uint32_t row = row_lo; row <= row_hi; ++row)
                 for (std::uint32_t column = column_lo; column <= column_hi; ++column)
-                    draw_tile(t, face, tiles[row * window.columns + column]);
+                    add_shot(t, face, tiles[row * window.columns + column]);
             return;
         }
         // Long in both directions: walk the rows between the edges.
@@ -202,8 +263,8 @@ private:
         whole.v = (window.v_lo + window.v_hi) / 2;
         whole.half_u = static_cast<float>((window.u_hi - window.u_lo) * 0.50001);
         whole.half_v = static_cast<float>((window.v_hi - window.v_lo) * 0.50001);
-        whole.start = static_cast<float>(window.reach);
-        const Edges edges = edges_of(t, whole);
+        Edges edges; // NOLINT(*-member-init)
+        make_edges<is_radial>(edges, t, whole, aside_of(t, window.reach));
         const double extra = 0x1p-18 * static_cast<double>(whole.half_v);
         const double room = 0x1p-18 * static_cast<double>(whole.half_u);
         for (std::uint32_t row = row_lo; row <= row_hi; ++row) {
@@ -220,34 +281,67 @@ private:
             const std::uint32_t last =
                 std::min(column_hi, window.column(whole.u + static_cast<double>(to) + room));
             for (std::uint32_t column = first; column <= last; ++column)
-                draw_tile(t, face, tiles[row * window.columns + column]);
+                add_shot(t, face, tiles[row * window.columns + column]);
         }
     }
 
-    void draw_tile(const Drawn& t, const Face& face, Tile& tile) {
-        if (tile.undecided.load(std::memory_order_relaxed) == 0) return;
+    /// The edges and bins of a shot; false: it meets no ray.
+    static bool aim(Shot& shot) {
+        const Drawn& t = *shot.drawn;
+        const Tile& tile = *shot.tile;
+        if (tile.undecided.load(std::memory_order_relaxed) == 0) return false;
         // Outward, so that rounding never skips a tile.
         if (t.depth_lo * (1 + std::copysign(0x1p-22, -t.depth_lo)) >
                 static_cast<double>(tile.far) ||
             t.depth_hi * (1 + std::copysign(0x1p-22, t.depth_hi)) < static_cast<double>(tile.near))
-            return;
-        const double room_u = 8 * 0x1p-24 * static_cast<double>(tile.half_u) + 0x1p-148;
-        const double room_v = 8 * 0x1p-24 * static_cast<double>(tile.half_v) + 0x1p-148;
-        const double u_lo = t.u_lo - tile.u - room_u;
-        const double u_hi = t.u_hi - tile.u + room_u;
-        const double v_lo = t.v_lo - tile.v - room_v;
-        const double v_hi = t.v_hi - tile.v + room_v;
+            return false;
+        const double aside = aside_of(t, static_cast<double>(tile.start));
+        if (t.is_flat) {
+            const FlatCorners corners = flat_corners(t, tile);
+            const auto& [x, y, greatest] = corners;
+            const auto off = static_cast<float>(noise_of(t, tile) + aside) * 1.0001F;
+            const float room =
+                4 * 0x1p-24F * (greatest + tile.half_u + tile.half_v) + off + 0x1p-140F;
+            const float x_lo = std::min(std::min(x[0], x[1]), x[2]) - room;
+            const float x_hi = std::max(std::max(x[0], x[1]), x[2]) + room;
+            const float y_lo = std::min(std::min(y[0], y[1]), y[2]) - room;
+            const float y_hi = std::max(std::max(y[0], y[1]), y[2]) + room;
+            if (x_lo > tile.half_u || x_hi < -tile.half_u || y_lo > tile.half_v ||
+                y_hi < -tile.half_v)
+                return false;
+            if (make_flat_edges(shot.edges, t, tile, corners, off)) {
+                shot.column_lo = tile.column(x_lo);
+                shot.column_hi = tile.column(x_hi);
+                shot.row_lo = tile.row(y_lo);
+                shot.row_hi = tile.row(y_hi);
+                return true;
+            }
+        }
         const auto half_u = static_cast<double>(tile.half_u);
         const auto half_v = static_cast<double>(tile.half_v);
-        if (u_lo > half_u || u_hi < -half_u || v_lo > half_v || v_hi < -half_v) return;
-        const Edges edges = edges_of(t, tile);
-        const auto clamped = [](double x, double half) {
-            return static_cast<float>(std::clamp(x, -half, half));
+        const double u_lo = t.u_lo - tile.u - 8 * 0x1p-24 * half_u - 0x1p-148;
+        const double u_hi = t.u_hi - tile.u + 8 * 0x1p-24 * half_u + 0x1p-148;
+        const double v_lo = t.v_lo - tile.v - 8 * 0x1p-24 * half_v - 0x1p-148;
+        const double v_hi = t.v_hi - tile.v + 8 * 0x1p-24 * half_v + 0x1p-148;
+        if (u_lo > half_u || u_hi < -half_u || v_lo > half_v || v_hi < -half_v) return false;
+        const auto clamped = [](double at, double half) {
+            return static_cast<float>(std::clamp(at, -half, half));
         };
-        const std::uint32_t column_lo = tile.column(clamped(u_lo, half_u));
-        const std::uint32_t column_hi = tile.column(clamped(u_hi, half_u));
-        const std::uint32_t row_lo = tile.row(clamped(v_lo, half_v));
-        const std::uint32_t row_hi = tile.row(clamped(v_hi, half_v));
+        shot.column_lo = tile.column(clamped(u_lo, half_u));
+        shot.column_hi = tile.column(clamped(u_hi, half_u));
+        shot.row_lo = tile.row(clamped(v_lo, half_v));
+        shot.row_hi = tile.row(clamped(v_hi, half_v));
+        make_edges<is_radial>(shot.edges, t, tile, aside);
+        return true;
+    }
+
+    void shoot(const Shot& shot) {
+        const Drawn& t = *shot.drawn;
+        const Edges& edges = shot.edges;
+        const Face& face = tiles_.faces[shot.face];
+        Tile& tile = *shot.tile;
+        const std::uint32_t column_lo = shot.column_lo, column_hi = shot.column_hi;
+        const std::uint32_t row_lo = shot.row_lo, row_hi = shot.row_hi;
         const TileLock lock(tile, raster_.is_shared);
         const std::uint32_t* const starts = &tiles_.bin_starts[tile.bins];
         const bool is_narrow = column_hi - column_lo < 2 || row_lo == row_hi;
@@ -551,6 +645,10 @@ private:
 
     const Raster& raster_;
     RayTiles& tiles_;
+    std::array<Drawn, 32> drawn_;
+    std::array<Shot, 64> shots_;
+    std::size_t drawn_count_ = 0;
+    std::size_t shot_count_ = 0;
     double brink_ = 0;
     double reach_ = 0;
     bool reversed_ = tiles_.faces[0].is_reversed();
@@ -561,6 +659,7 @@ void draw_range(const Raster& raster, std::size_t first, std::size_t last) {
     Drawing<is_radial, is_closest> drawing(raster);
     for (std::size_t i = first; i < last; ++i)
         drawing.draw(to_prim(i));
+    drawing.finish();
 }
 
 void draw_triangles(const Raster& raster, std::size_t first, std::size_t last) {
