@@ -38,36 +38,49 @@ inline void set_depths(Edges& edges, const Drawn& t) {
 /// The corners of a flat triangle relative to a tile's center, each within 2^-24 of itself.
 struct FlatCorners {
     std::array<float, 3> x, y;
+    float x_lo, x_hi, y_lo, y_hi;
     float greatest; ///< coordinate by magnitude
+    float extent;   ///< greatest difference of coordinates, about
 };
 
 inline FlatCorners flat_corners(const Drawn& t, const Tile& tile) {
     FlatCorners corners; // NOLINT(*-member-init)
-    corners.greatest = 0;
+    auto& [x, y, x_lo, x_hi, y_lo, y_hi, greatest, extent] = corners;
     for (std::size_t i = 0; i < 3; ++i) {
-        corners.x[i] = static_cast<float>(t.u[i] - tile.u);
-        corners.y[i] = static_cast<float>(t.v[i] - tile.v);
-        corners.greatest = std::max(
-            corners.greatest, std::max(std::abs(corners.x[i]), std::abs(corners.y[i]))
-        );
+        x[i] = static_cast<float>(t.u[i] - tile.u);
+        y[i] = static_cast<float>(t.v[i] - tile.v);
     }
+    x_lo = std::min(std::min(x[0], x[1]), x[2]);
+    x_hi = std::max(std::max(x[0], x[1]), x[2]);
+    y_lo = std::min(std::min(y[0], y[1]), y[2]);
+    y_hi = std::max(std::max(y[0], y[1]), y[2]);
+    greatest = std::max(std::max(-x_lo, x_hi), std::max(-y_lo, y_hi));
+    extent = std::max(x_hi - x_lo, y_hi - y_lo);
     return corners;
 }
 
 /// For a flat triangle of ordinary size; false when float's range does not do.
 ///
-/// With e = 2^-24, M the largest coordinate of a vertex and L that of a vertex or a ray, both
-/// relative to the tile: vertices are within e M, rays within e L, and each of n x + k costs at
-/// most 7 roundings of terms up to 2 M L and 2 M^2; summed, under 64 e M L. Rays and vertices are
-/// `aside` of where they are seen, at most.
+/// With e = 2^-24, M the largest coordinate of a vertex, L that of a vertex or a ray, both relative
+/// to the tile, and D the largest difference of vertices: vertices are within e M, rays within e L,
+/// so k = x y' - y x' is within 6 e M^2 + 2 e M D, its factors u and v within 2 e M + e D, and
+/// evaluating u x + v y + k adds at most 7 e D L + 6 e M D and, for the rays, 2 e D L. Summed, that
+/// is under e L (10 M + 17 D); 16 and 24 cover second order terms and the rounding of the bound.
+/// Doubles are off by `noise` at most, and rays meet the triangle up to `aside` of where they are
+/// seen.
 inline bool make_flat_edges(
-    Edges& edges, const Drawn& t, const Tile& tile, const FlatCorners& corners, float aside
+    Edges& edges,
+    const Drawn& t,
+    const Tile& tile,
+    const FlatCorners& corners,
+    float noise,
+    float aside
 ) {
-    const auto& [x, y, across] = corners;
+    const auto& [x, y, x_lo, x_hi, y_lo, y_hi, across, extent] = corners;
     const float greatest = std::max(across, std::max(tile.half_u, tile.half_v));
     if (!(across > 0x1p-50F && greatest < 0x1p50F)) return false;
-    const float bound =
-        across * greatest * (80 * 0x1p-24F) + greatest * (24 * aside) + 0x1p-120F;
+    const float bound = greatest * (0x1p-20F * across + 1.5F * 0x1p-20F * extent + 16 * noise) +
+                        2.1F * extent * aside + 0x1p-120F;
     const float side = t.side > 0 ? 1.0F : -1.0F;
     for (std::size_t i = 0; i < 3; ++i) {
         const std::size_t a = (i + 1) % 3;
@@ -157,20 +170,35 @@ void make_edges(Edges& edges, const Drawn& t, const Tile& tile, double aside) {
     set_depths(edges, t);
 }
 
-/// The range of x in which all edges may be positive for some y in [lo, hi]; false: nowhere.
-inline bool clip_row(const Edges& edges, float lo, float hi, float& from, float& to) {
-    if (!edges.one_sided) return true;
-    for (std::size_t i = 0; i < 3; ++i) {
-        const float rest = std::max(edges.v[i] * lo, edges.v[i] * hi) + edges.k[i] + edges.sure;
-        if (edges.u[i] > 0) {
-            from = std::max(from, -rest / edges.u[i]);
-        } else if (edges.u[i] < 0) {
-            to = std::min(to, -rest / edges.u[i]);
-        } else if (rest < 0) {
-            return false;
-        }
+/// Rows of a picture between the edges of a triangle.
+class RowClipper {
+public:
+    explicit RowClipper(const Edges& edges) : edges_(edges) {
+        for (std::size_t i = 0; i < 3; ++i)
+            per_u_[i] = edges.u[i] != 0 ? -1 / edges.u[i] : 0;
     }
-    return from <= to;
-}
+
+    /// The range of x in which all edges may be positive for some y in [lo, hi], but for roundings
+    /// of 2^-21 of the ends; false: nowhere.
+    [[nodiscard]] bool operator()(float lo, float hi, float& from, float& to) const {
+        if (!edges_.one_sided) return true;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const float rest =
+                std::max(edges_.v[i] * lo, edges_.v[i] * hi) + edges_.k[i] + edges_.sure;
+            if (edges_.u[i] > 0) {
+                from = std::max(from, rest * per_u_[i]);
+            } else if (edges_.u[i] < 0) {
+                to = std::min(to, rest * per_u_[i]);
+            } else if (rest < 0) {
+                return false;
+            }
+        }
+        return from <= to;
+    }
+
+private:
+    const Edges& edges_;
+    std::array<float, 3> per_u_{};
+};
 
 } // namespace raywise::detail

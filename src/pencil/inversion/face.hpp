@@ -25,7 +25,7 @@ struct FaceRay {
     double u, v, near, far;
     double start; ///< depth at t = 0
     double brink; ///< radial: a hit as near to the apex may be seen anywhere, or behind
-    double scale; ///< with a depth: by how many units the rounding of t moves it
+    double tiny;  ///< such that the roundings of t and of depths are 2^-24 (depth + start + tiny)
 };
 
 class Face {
@@ -85,7 +85,7 @@ public:
         // A float direction passes the apex by a rounding, and a tiny negative t is rounded to 0.
         seen.brink = 8 * 0x1p-24 * std::abs(from.depth) + 0x1p-148 * speed;
         // Denormal t and depths have fewer bits.
-        seen.scale = std::abs(from.depth) + 0x1p-124 * speed + 0x1p-120;
+        seen.tiny = 0x1p-124 * speed + 0x1p-120;
         const bool forward = leaves != is_reversed();
         seen.near = from.depth + (forward ? t_min : -t_max) * speed;
         seen.far = from.depth + (forward ? t_max : -t_min) * speed;

@@ -265,6 +265,7 @@ private:
         whole.half_v = static_cast<float>((window.v_hi - window.v_lo) * 0.50001);
         Edges edges; // NOLINT(*-member-init)
         make_edges<is_radial>(edges, t, whole, aside_of(t, window.reach));
+        const RowClipper clip(edges);
         const double extra = 0x1p-18 * static_cast<double>(whole.half_v);
         const double room = 0x1p-18 * static_cast<double>(whole.half_u);
         for (std::uint32_t row = row_lo; row <= row_hi; ++row) {
@@ -275,7 +276,7 @@ private:
             const auto below = static_cast<float>(lo - whole.v);
             const auto above = static_cast<float>(hi - whole.v);
             float from = -whole.half_u, to = whole.half_u;
-            if (!clip_row(edges, below, above, from, to)) continue;
+            if (!clip(below, above, from, to)) continue;
             const std::uint32_t first =
                 std::max(column_lo, window.column(whole.u + static_cast<double>(from) - room));
             const std::uint32_t last =
@@ -292,24 +293,25 @@ private:
         if (tile.undecided.load(std::memory_order_relaxed) == 0) return false;
         // Outward, so that rounding never skips a tile.
         if (t.depth_lo * (1 + std::copysign(0x1p-22, -t.depth_lo)) >
-                static_cast<double>(tile.far) ||
-            t.depth_hi * (1 + std::copysign(0x1p-22, t.depth_hi)) < static_cast<double>(tile.near))
+                static_cast<double>(tile.far.load(std::memory_order_relaxed)) ||
+            t.depth_hi * (1 + std::copysign(0x1p-22, t.depth_hi)) <
+                static_cast<double>(tile.near.load(std::memory_order_relaxed)))
             return false;
         const double aside = aside_of(t, static_cast<double>(tile.start));
         if (t.is_flat) {
             const FlatCorners corners = flat_corners(t, tile);
-            const auto& [x, y, greatest] = corners;
-            const auto off = static_cast<float>(noise_of(t, tile) + aside) * 1.0001F;
-            const float room =
-                4 * 0x1p-24F * (greatest + tile.half_u + tile.half_v) + off + 0x1p-140F;
-            const float x_lo = std::min(std::min(x[0], x[1]), x[2]) - room;
-            const float x_hi = std::max(std::max(x[0], x[1]), x[2]) + room;
-            const float y_lo = std::min(std::min(y[0], y[1]), y[2]) - room;
-            const float y_hi = std::max(std::max(y[0], y[1]), y[2]) + room;
+            const auto noise = static_cast<float>(noise_of(t, tile)) * 1.0001F;
+            const auto off = static_cast<float>(aside) * 1.0001F;
+            const float room = 4 * 0x1p-24F * (corners.greatest + tile.half_u + tile.half_v) +
+                               noise + off + 0x1p-140F;
+            const float x_lo = corners.x_lo - room;
+            const float x_hi = corners.x_hi + room;
+            const float y_lo = corners.y_lo - room;
+            const float y_hi = corners.y_hi + room;
             if (x_lo > tile.half_u || x_hi < -tile.half_u || y_lo > tile.half_v ||
                 y_hi < -tile.half_v)
                 return false;
-            if (make_flat_edges(shot.edges, t, tile, corners, off)) {
+            if (make_flat_edges(shot.edges, t, tile, corners, noise, off)) {
                 shot.column_lo = tile.column(x_lo);
                 shot.column_hi = tile.column(x_hi);
                 shot.row_lo = tile.row(y_lo);
@@ -344,24 +346,8 @@ private:
         const std::uint32_t row_lo = shot.row_lo, row_hi = shot.row_hi;
         const TileLock lock(tile, raster_.is_shared);
         const std::uint32_t* const starts = &tiles_.bin_starts[tile.bins];
-        const bool is_narrow = column_hi - column_lo < 2 || row_lo == row_hi;
-        const float extra = 0x1p-20F * tile.half_v;
-        const float room = 0x1p-18F * tile.half_u;
-        const float per_row = tile.per_v > 0 ? 1 / tile.per_v : 0;
-        for (std::uint32_t row = row_lo; row <= row_hi; ++row) {
-            std::uint32_t first = column_lo;
-            std::uint32_t last = column_hi;
-            if (!is_narrow) {
-                float lo = -tile.half_v, hi = tile.half_v;
-                if (row > 0) lo = tile.v0 + static_cast<float>(row) * per_row - extra;
-                if (row + 1 < tile.rows)
-                    hi = tile.v0 + static_cast<float>(row + 1) * per_row + extra;
-                float from = -tile.half_u, to = tile.half_u;
-                if (!clip_row(edges, lo, hi, from, to)) continue;
-                first = std::max(first, tile.column(from - room));
-                last = std::min(last, tile.column(to + room));
-                if (first > last) continue;
-            }
+        const auto draw_row = [&](std::uint32_t row, std::uint32_t first, std::uint32_t last)
+                                  HWY_ATTR {
             const std::uint32_t* const row_starts = starts + row * tile.columns;
             draw_run(
                 t,
@@ -371,6 +357,26 @@ private:
                 tile.first + row_starts[first],
                 tile.first + row_starts[last + 1]
             );
+        };
+        if (column_hi - column_lo < 2 || row_lo == row_hi) {
+            for (std::uint32_t row = row_lo; row <= row_hi; ++row)
+                draw_row(row, column_lo, column_hi);
+        } else {
+            const RowClipper clip(edges);
+            const float extra = 0x1p-20F * tile.half_v;
+            const float room = 0x1p-18F * tile.half_u;
+            const float per_row = tile.per_v > 0 ? 1 / tile.per_v : 0;
+            for (std::uint32_t row = row_lo; row <= row_hi; ++row) {
+                float lo = -tile.half_v, hi = tile.half_v;
+                if (row > 0) lo = tile.v0 + static_cast<float>(row) * per_row - extra;
+                if (row + 1 < tile.rows)
+                    hi = tile.v0 + static_cast<float>(row + 1) * per_row + extra;
+                float from = -tile.half_u, to = tile.half_u;
+                if (!clip(lo, hi, from, to)) continue;
+                const std::uint32_t first = std::max(column_lo, tile.column(from - room));
+                const std::uint32_t last = std::min(column_hi, tile.column(to + room));
+                if (first <= last) draw_row(row, first, last);
+            }
         }
         const std::uint32_t undecided = tile.undecided.load(std::memory_order_relaxed);
         if (undecided * 2 < tile.count && tile.count > 32) drop_decided(tile);
@@ -582,7 +588,7 @@ private:
         const bool leaves = !is_radial || ray.origin == raster_.pencil.apex();
         const FaceRay seen = face.ray<is_radial>(ray, leaves);
         const double depth = face.depth_at(ray, best->t);
-        const double margin = 16 * 0x1p-24 * (std::abs(depth) + seen.scale);
+        const double margin = 16 * 0x1p-24 * (std::abs(depth) + std::abs(seen.start) + seen.tiny);
         tiles_.far[slot] = std::min(tiles_.far[slot], static_cast<float>(depth + margin));
         tiles_.least[slot] = static_cast<float>(depth - margin);
     }
@@ -617,6 +623,8 @@ private:
         const std::uint32_t bins = tile.columns * tile.rows;
         std::uint32_t to = 0;
         std::uint32_t from = 0;
+        float near = infinity;
+        float far = -infinity;
         for (std::uint32_t bin = 0; bin < bins; ++bin) {
             const std::uint32_t end = starts[bin + 1];
             starts[bin] = to;
@@ -628,6 +636,8 @@ private:
                 tiles_.v[b] = tiles_.v[a];
                 tiles_.near[b] = tiles_.near[a];
                 tiles_.far[b] = tiles_.far[a];
+                near = std::min(near, tiles_.near[b]);
+                far = std::max(far, tiles_.far[b]);
                 tiles_.excluded[b] = tiles_.excluded[a];
                 tiles_.index[b] = tiles_.index[a];
             }
@@ -639,6 +649,8 @@ private:
             tiles_.far[tile.first + slot] = -infinity;
         }
         tile.count = to;
+        tile.near.store(near, std::memory_order_relaxed);
+        tile.far.store(far, std::memory_order_relaxed);
     }
 
     static constexpr float infinity = std::numeric_limits<float>::infinity();

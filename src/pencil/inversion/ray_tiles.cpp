@@ -13,12 +13,12 @@ namespace {
 constexpr std::size_t rays_per_tile = 512;
 constexpr std::size_t rays_per_bin = 8;
 constexpr std::size_t sample_size = 1024;
-constexpr std::uint32_t no_tile = 0xFFFFFFFFU;
+constexpr std::uint32_t no_tile = 0xFFFFFFFU;
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
 /// A ray on its way from the batch to its slot.
 struct SeenRay {
-    float u, v, near, far, scale, start;
+    float u, v, near, far, start;
     std::uint32_t excluded, index;
 };
 
@@ -132,20 +132,23 @@ make_windows(const Pencil& pencil, const std::vector<Face>& faces, std::span<con
 }
 
 /// Sorts the rays of one tile into rows of bins.
-void sort_tile(RayTiles& to, Tile& tile, std::span<SeenRay> rays, bool closest) {
+void sort_tile(RayTiles& to, Tile& tile, std::span<const SeenRay> rays, float tiny, bool closest) {
     tile.count = static_cast<std::uint32_t>(rays.size());
     tile.undecided.store(tile.count, std::memory_order_relaxed);
     float u_lo = infinity, u_hi = -infinity, v_lo = infinity, v_hi = -infinity;
+    float near = infinity, far = -infinity;
     for (const SeenRay& ray : rays) {
         u_lo = std::min(u_lo, ray.u);
         u_hi = std::max(u_hi, ray.u);
         v_lo = std::min(v_lo, ray.v);
         v_hi = std::max(v_hi, ray.v);
-        tile.near = std::min(tile.near, ray.near);
-        tile.far = std::max(tile.far, ray.far);
-        tile.scale = std::max(tile.scale, ray.scale);
+        near = std::min(near, ray.near);
+        far = std::max(far, ray.far);
         tile.start = std::max(tile.start, ray.start);
     }
+    tile.near.store(near, std::memory_order_relaxed);
+    tile.far.store(far, std::memory_order_relaxed);
+    tile.scale = tile.start + tiny;
     if (!rays.empty()) {
         tile.half_u = std::max(-u_lo, u_hi);
         tile.half_v = std::max(-v_lo, v_hi);
@@ -187,7 +190,7 @@ void sort_tile(RayTiles& to, Tile& tile, std::span<SeenRay> rays, bool closest) 
         to.excluded[slot] = ray.excluded;
         to.index[slot] = ray.index;
         if (closest) {
-            to.least[slot] = ray.far - 16 * unit_roundoff * (std::abs(ray.far) + ray.scale);
+            to.least[slot] = ray.far - 16 * unit_roundoff * (std::abs(ray.far) + tile.scale);
             // A far end at infinity: every finite depth is before it.
             if (std::isinf(ray.far)) to.least[slot] = ray.far;
             to.best[slot] = static_cast<std::uint32_t>(no_prim);
@@ -264,7 +267,7 @@ void RayTiles::sort(
         for (std::size_t i = begin; i < end; ++i) {
             const Running running = running_of.template operator()<is_radial>(rays[i]);
             const bool leaves = running == Running::leaving;
-            places[i] = {no_tile, leaves, 0};
+            places[i] = {no_tile, 0, leaves ? 1U : 0U};
             if (running == Running::nowhere) continue;
             if (asked != RaysAsked::all && leaves != (asked == RaysAsked::leaving)) {
                 ++share.skipped;
@@ -276,32 +279,33 @@ void RayTiles::sort(
             const Window& window = windows[f];
             const std::uint32_t tile =
                 window.first_tile + window.row(ray.v) * window.columns + window.column(ray.u);
-            places[i].tile = tile;
-            places[i].face = static_cast<std::uint8_t>(f);
+            places[i] = {tile & no_tile, static_cast<std::uint32_t>(f) & 7U, leaves ? 1U : 0U};
             ++share.starts[tile];
             share.windows[f].include(ray);
         }
     });
     const std::vector<std::uint32_t> firsts = lay_out(shares);
+    double tiny = 0;
+    for (const Window& window : windows)
+        tiny = std::max(tiny, window.tiny * (1 + 0x1p-22));
 
     const LargeBuffer<SeenRay> sorted(firsts.back());
     executor.for_each_chunk(rays.size(), chunk, [&](std::size_t begin, std::size_t end) {
         std::vector<std::uint32_t>& starts = shares[begin / chunk].starts;
         for (std::size_t i = begin; i < end; ++i) {
-            const Placed& place = places[i];
+            const Placed place = places[i];
             if (place.tile == no_tile) continue;
-            const FaceRay ray = faces[place.face].ray<is_radial>(rays[i], place.leaves);
+            const FaceRay ray = faces[place.face].ray<is_radial>(rays[i], place.leaves != 0);
             const Tile& tile = tiles[place.tile];
             // Outward, by more than roundings of the depths and of t come to.
             const auto margin = [&](double end_depth) {
-                return 4 * 0x1p-24 * (std::abs(end_depth) + ray.scale);
+                return 4 * 0x1p-24 * (std::abs(end_depth) + std::abs(ray.start) + ray.tiny);
             };
             sorted[starts[place.tile]++] = {
                 static_cast<float>(ray.u - tile.u),
                 static_cast<float>(ray.v - tile.v),
                 static_cast<float>(ray.near - margin(ray.near)),
                 static_cast<float>(ray.far + margin(ray.far)),
-                static_cast<float>(ray.scale * (1 + 0x1p-22)),
                 static_cast<float>(std::abs(ray.start) * (1 + 0x1p-22)),
                 static_cast<std::uint32_t>(rays[i].excluded),
                 static_cast<std::uint32_t>(i)
@@ -314,6 +318,7 @@ void RayTiles::sort(
                 *this,
                 tiles[t],
                 {sorted.get() + firsts[t], firsts[t + 1] - firsts[t]},
+                static_cast<float>(tiny),
                 asked != RaysAsked::all
             );
     });

@@ -38,6 +38,7 @@ struct Window {
     double v_lo = std::numeric_limits<double>::infinity();
     double v_hi = -std::numeric_limits<double>::infinity();
     double brink = 0; ///< greatest FaceRay::brink
+    double tiny = 0;  ///< greatest FaceRay::scale beside the depth
     double reach = 0; ///< greatest depth at which a ray of a radial pencil starts
 
     [[nodiscard]] bool is_empty() const { return !(u_lo <= u_hi); }
@@ -58,6 +59,7 @@ struct Window {
         v_lo = std::min(v_lo, part.v_lo);
         v_hi = std::max(v_hi, part.v_hi);
         brink = std::max(brink, part.brink);
+        tiny = std::max(tiny, part.tiny);
         reach = std::max(reach, part.reach);
     }
 
@@ -67,6 +69,7 @@ struct Window {
         v_lo = std::min(v_lo, ray.v);
         v_hi = std::max(v_hi, ray.v);
         brink = std::max(brink, ray.brink);
+        tiny = std::max(tiny, ray.tiny);
         reach = std::max(reach, std::abs(ray.start));
     }
 };
@@ -82,10 +85,11 @@ struct alignas(64) Tile {
     float u0 = 0, v0 = 0; ///< lower corner of the bins
     float per_u = 0, per_v = 0;
     float half_u = 0, half_v = 0;                        ///< greatest coordinates by magnitude
-    float near = std::numeric_limits<float>::infinity(); ///< bounds of the rays' intervals
-    float far = -std::numeric_limits<float>::infinity();
+    /// Bounds of the intervals of the rays kept.
+    std::atomic<float> near{std::numeric_limits<float>::infinity()};
+    std::atomic<float> far{-std::numeric_limits<float>::infinity()};
     float start = 0; ///< greatest depth by magnitude at which a ray starts
-    float scale = 0; ///< greatest FaceRay::scale
+    float scale = 0; ///< the same, more by FaceRay::tiny
     std::atomic<std::uint32_t> undecided{0};
     std::atomic<bool> busy{false};
 
@@ -136,9 +140,9 @@ public:
 private:
     /// Where a ray of the batch is seen, while it is sorted.
     struct Placed {
-        std::uint32_t tile;
-        bool leaves;
-        std::uint8_t face;
+        std::uint32_t tile : 28;
+        std::uint32_t face : 3;
+        std::uint32_t leaves : 1;
     };
 
     /// What one part of the batch adds.
