@@ -6,6 +6,8 @@
 #include <raywise/core/ids.hpp>
 #include <raywise/geometry/vec.hpp>
 
+#include <hwy/base.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -39,7 +41,7 @@ inline double plane_distance(const Drawn& t) {
 
 /// Sets what follows from the points.
 template <bool is_radial>
-void measure(Drawn& t) {
+HWY_INLINE void measure(Drawn& t) {
     const auto& [a, b, c] = t.p;
     t.depth_lo = std::min(std::min(a.depth, b.depth), c.depth);
     t.depth_hi = std::max(std::max(a.depth, b.depth), c.depth);
@@ -65,7 +67,7 @@ void measure(Drawn& t) {
 /// The float direction of a shadow ray is off by 2^-24 in each component, so at depth z, started at
 /// depth s, the ray is seen at most 2 |u| 2^-24 |s / z - 1| aside, |u| <= 1. A point where it meets
 /// a triangle at distance r > 8 * 2^-24 s is seen in the doubled window, hence z >= r / 2.
-inline double deviation(const Drawn& t, double reach) {
+HWY_INLINE double deviation(const Drawn& t, double reach) {
     const double nearest =
         std::max(t.distance / 2, std::min(std::min(t.p[0].h, t.p[1].h), t.p[2].h));
     return 2.1 * 0x1p-24 * std::max(1.0, reach / nearest);
@@ -73,7 +75,7 @@ inline double deviation(const Drawn& t, double reach) {
 
 /// Sets area and side from u and v, which are within `error` of the exact ones. False: the side is
 /// not sure.
-inline bool find_side(Drawn& t, double error) {
+HWY_INLINE bool find_side(Drawn& t, double error) {
     const double ax = t.u[1] - t.u[0], ay = t.v[1] - t.v[0];
     const double bx = t.u[2] - t.u[0], by = t.v[2] - t.v[0];
     const double across =

@@ -4,6 +4,8 @@
 #include "pencil/inversion/drawn.hpp"
 #include "pencil/inversion/ray_tiles.hpp"
 
+#include <hwy/base.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -29,7 +31,7 @@ struct Edges {
     double volume_error; ///< relative
 };
 
-inline void set_depths(Edges& edges, const Drawn& t) {
+HWY_INLINE void set_depths(Edges& edges, const Drawn& t) {
     const double error = 0x1p-50 * t.size + 0x1p-145;
     edges.depth_lo = static_cast<float>(t.depth_lo - error - 0x1p-23 * std::abs(t.depth_lo));
     edges.depth_hi = static_cast<float>(t.depth_hi + error + 0x1p-23 * std::abs(t.depth_hi));
@@ -43,7 +45,7 @@ struct FlatCorners {
     float extent;   ///< greatest difference of coordinates, about
 };
 
-inline FlatCorners flat_corners(const Drawn& t, const Tile& tile) {
+HWY_INLINE FlatCorners flat_corners(const Drawn& t, const Tile& tile) {
     FlatCorners corners; // NOLINT(*-member-init)
     auto& [x, y, x_lo, x_hi, y_lo, y_hi, greatest, extent] = corners;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -68,7 +70,7 @@ inline FlatCorners flat_corners(const Drawn& t, const Tile& tile) {
 /// is under e L (10 M + 17 D); 16 and 24 cover second order terms and the rounding of the bound.
 /// Doubles are off by `noise` at most, and rays meet the triangle up to `aside` of where they are
 /// seen.
-inline bool make_flat_edges(
+HWY_INLINE bool make_flat_edges(
     Edges& edges,
     const Drawn& t,
     const Tile& tile,

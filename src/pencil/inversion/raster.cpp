@@ -15,8 +15,8 @@
 
 #include <raywise/geometry/ray_triangle.hpp>
 
-#include <hwy/foreach_target.h> // first: includes this file once per instruction set
 #include <hwy/cache_control.h>
+#include <hwy/foreach_target.h> // first: includes this file once per instruction set
 #include <hwy/highway.h>
 
 #include <algorithm>
@@ -346,8 +346,8 @@ private:
         const std::uint32_t row_lo = shot.row_lo, row_hi = shot.row_hi;
         const TileLock lock(tile, raster_.is_shared);
         const std::uint32_t* const starts = &tiles_.bin_starts[tile.bins];
-        const auto draw_row = [&](std::uint32_t row, std::uint32_t first, std::uint32_t last)
-                                  HWY_ATTR {
+        const auto draw_row = [&](std::uint32_t row, std::uint32_t first, std::uint32_t last
+                              ) HWY_ATTR {
             const std::uint32_t* const row_starts = starts + row * tile.columns;
             draw_run(
                 t,

@@ -10,8 +10,8 @@ namespace raywise::detail {
 
 namespace {
 
-constexpr std::size_t rays_per_tile = 512;
-constexpr std::size_t rays_per_bin = 8;
+constexpr std::size_t rays_per_tile = 1024;
+constexpr std::size_t rays_per_bin = 16;
 constexpr std::size_t sample_size = 1024;
 constexpr std::uint32_t no_tile = 0xFFFFFFFU;
 constexpr float infinity = std::numeric_limits<float>::infinity();

@@ -84,7 +84,7 @@ struct alignas(64) Tile {
     std::uint32_t columns = 1, rows = 1;
     float u0 = 0, v0 = 0; ///< lower corner of the bins
     float per_u = 0, per_v = 0;
-    float half_u = 0, half_v = 0;                        ///< greatest coordinates by magnitude
+    float half_u = 0, half_v = 0; ///< greatest coordinates by magnitude
     /// Bounds of the intervals of the rays kept.
     std::atomic<float> near{std::numeric_limits<float>::infinity()};
     std::atomic<float> far{-std::numeric_limits<float>::infinity()};
