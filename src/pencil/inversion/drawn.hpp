@@ -4,6 +4,7 @@
 #include "pencil/inversion/face.hpp"
 
 #include <raywise/core/ids.hpp>
+#include <raywise/geometry/triangle.hpp>
 #include <raywise/geometry/vec.hpp>
 
 #include <hwy/base.h>
@@ -11,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
 namespace raywise::detail {
@@ -29,22 +31,56 @@ struct Drawn {
     double u_lo, u_hi, v_lo, v_hi; ///< where it may be seen; unbounded when it reaches behind
 };
 
+/// A triangle as seen from an apex in all directions: coordinates are relative to it.
+struct Around {
+    Vec3d a, b, c;
+    Vec3d lo, hi;
+    double size;     ///< no coordinate's magnitude is greater
+    double distance; ///< at most the largest coordinate of any point of the triangle
+};
+
 /// A lower bound on the distance of the plane from the apex, in the largest of the coordinates.
-inline double plane_distance(const Drawn& t) {
-    const auto vec = [](const FacePoint& p) { return Vec3d{p.x, p.y, p.h}; };
-    const Vec3d a = vec(t.p[0]);
-    const Vec3d normal = cross(vec(t.p[1]) - a, vec(t.p[2]) - a);
+inline double plane_distance(const Around& t) {
+    const Vec3d normal = cross(t.b - t.a, t.c - t.a);
     const Vec3d n = abs(normal);
-    const double volume = std::abs(dot(a, normal)) - 0x1p-46 * t.size * t.size * t.size;
+    const double volume = std::abs(dot(t.a, normal)) - 0x1p-46 * t.size * t.size * t.size;
     return volume > 0 ? volume / (n.x + n.y + n.z + 0x1p-46 * t.size * t.size) : 0;
 }
 
-/// Sets what follows from the points.
-template <bool is_radial>
-HWY_INLINE void measure(Drawn& t) {
+HWY_INLINE Around look_around(Vec3d apex, const Triangle& triangle) {
+    Around t; // NOLINT(*-member-init)
+    t.a = to_double(triangle.v0) - apex;
+    t.b = to_double(triangle.v1) - apex;
+    t.c = to_double(triangle.v2) - apex;
+    t.lo = min(min(t.a, t.b), t.c);
+    t.hi = max(max(t.a, t.b), t.c);
+    const auto greatest = [](const Vec3d& v) { return std::max(std::max(v.x, v.y), v.z); };
+    t.size = std::max(greatest(t.hi), greatest(-t.lo));
+    t.distance = std::max(std::max(greatest(t.lo), greatest(-t.hi)), 0.0);
+    if (t.distance < 0x1p-6 * t.size) t.distance = std::max(t.distance, plane_distance(t));
+    return t;
+}
+
+/// Whether the triangle may reach into the pyramid of a face of the cube, made wider by `slack`.
+HWY_INLINE bool may_face(const Around& t, std::size_t face, double slack) {
+    const int z = static_cast<int>(face / 2);
+    const double most = (face % 2 == 0 ? t.hi[z] : -t.lo[z]) * (1 + slack);
+    if (!(most > 0)) return false;
+    const int x = (z + 1) % 3;
+    const int y = (z + 2) % 3;
+    return std::max(t.lo[x], -t.hi[x]) <= most && std::max(t.lo[y], -t.hi[y]) <= most;
+}
+
+/// Sets the bounds that follow from the points.
+HWY_INLINE void measure_depth(Drawn& t) {
     const auto& [a, b, c] = t.p;
     t.depth_lo = std::min(std::min(a.depth, b.depth), c.depth);
     t.depth_hi = std::max(std::max(a.depth, b.depth), c.depth);
+}
+
+HWY_INLINE void measure_parallel(Drawn& t) {
+    const auto& [a, b, c] = t.p;
+    measure_depth(t);
     t.u_lo = std::min(std::min(a.x, b.x), c.x);
     t.u_hi = std::max(std::max(a.x, b.x), c.x);
     t.v_lo = std::min(std::min(a.y, b.y), c.y);
@@ -53,13 +89,6 @@ HWY_INLINE void measure(Drawn& t) {
         std::max(std::max(-t.u_lo, t.u_hi), std::max(-t.v_lo, t.v_hi)),
         std::max(-t.depth_lo, t.depth_hi)
     );
-    if constexpr (is_radial) {
-        t.distance = std::max(
-            std::max(std::max(t.u_lo, -t.u_hi), std::max(t.v_lo, -t.v_hi)),
-            std::max(std::max(t.depth_lo, -t.depth_hi), 0.0)
-        );
-        if (t.distance < 0x1p-6 * t.size) t.distance = std::max(t.distance, plane_distance(t));
-    }
 }
 
 /// By how much, in the picture, a ray of this reach may be off where it meets the triangle.

@@ -70,32 +70,32 @@ public:
     /// Soon, or at the latest by `finish`.
     void draw(PrimId id) {
         const Triangle triangle = raster_.triangles[id];
-        for (std::size_t f = 0; f < tiles_.faces.size(); ++f) {
-            const Window& window = tiles_.windows[f];
-            if (window.is_empty()) continue;
-            if (drawn_count_ == drawn_.size()) finish();
-            Drawn& drawn = drawn_[drawn_count_];
-            const Face& face = tiles_.faces[f];
-            drawn.id = id;
-            drawn.p[0] = face.point<is_radial>(triangle.v0);
-            drawn.p[1] = face.point<is_radial>(triangle.v1);
-            drawn.p[2] = face.point<is_radial>(triangle.v2);
-            measure<is_radial>(drawn);
-            if (!has_finite_corners(drawn)) return;
-            if constexpr (is_radial) {
-                // Rays that end at the apex pass it by a rounding, rays that start there may hit
-                // what touches it from any side: no picture shows that.
-                if (drawn.distance <= brink_) {
-                    ask_all(id);
-                    return;
-                }
-                if (std::max(std::max(drawn.p[0].h, drawn.p[1].h), drawn.p[2].h) <= 0) continue;
-                if (!show_radial(drawn, window)) continue;
-            } else {
-                if (!show_parallel(drawn, window, triangle)) continue;
+        if (!is_finite(triangle)) return;
+        if constexpr (is_radial) {
+            const Around around = look_around(apex_, triangle);
+            // Rays that end at the apex pass it by a rounding, rays that start there may hit what
+            // touches it from any side: no picture shows that.
+            if (around.distance <= brink_) {
+                ask_all(id);
+                return;
             }
-            find_tiles(drawn, f);
-            ++drawn_count_;
+            const double slack =
+                0x1p-40 + 2.1 * 0x1p-24 * std::max(1.0, 2 * reach_ / around.distance);
+            for (std::size_t f = 0; f < tiles_.faces.size(); ++f) {
+                const Window& window = tiles_.windows[f];
+                if (window.is_empty() || !may_face(around, f, slack)) continue;
+                Drawn& drawn = next_drawn(id, f, triangle);
+                measure_depth(drawn);
+                drawn.size = around.size;
+                drawn.distance = around.distance;
+                if (show_radial(drawn, window)) add_shots(drawn, f);
+            }
+        } else {
+            const Window& window = tiles_.windows[0];
+            if (window.is_empty()) return;
+            Drawn& drawn = next_drawn(id, 0, triangle);
+            measure_parallel(drawn);
+            if (show_parallel(drawn, window, triangle)) add_shots(drawn, 0);
         }
     }
 
@@ -110,12 +110,22 @@ private:
     using V = hn::Vec<D>;
     using Mask = hn::Mask<D>;
 
-    /// Sums of finite floats are finite doubles.
-    static bool has_finite_corners(const Drawn& t) {
-        const auto& [a, b, c] = t.p;
-        const double sum =
-            a.x + a.y + a.h + b.x + b.y + b.h + c.x + c.y + c.h + a.depth + b.depth + c.depth;
-        return sum - sum == 0;
+    /// Zero times a float is a number only when it is finite.
+    static bool is_finite(const Triangle& t) {
+        const auto& [a, b, c] = t;
+        return 0 * a.x + 0 * a.y + 0 * a.z + 0 * b.x + 0 * b.y + 0 * b.z + 0 * c.x + 0 * c.y +
+                   0 * c.z ==
+               0;
+    }
+
+    Drawn& next_drawn(PrimId id, std::size_t face, const Triangle& triangle) {
+        if (drawn_count_ == drawn_.size()) finish();
+        Drawn& drawn = drawn_[drawn_count_];
+        drawn.id = id;
+        drawn.p[0] = tiles_.faces[face].point<is_radial>(triangle.v0);
+        drawn.p[1] = tiles_.faces[face].point<is_radial>(triangle.v1);
+        drawn.p[2] = tiles_.faces[face].point<is_radial>(triangle.v2);
+        return drawn;
     }
 
     static bool is_beside(const Drawn& t, const Window& window) {
@@ -246,7 +256,9 @@ private:
         return &tiles_.bin_starts[tile.bins + shot.row_lo * tile.columns + shot.column_lo];
     }
 
-    void find_tiles(const Drawn& t, std::size_t face) {
+    /// Shots on all tiles that the last triangle drawn may meet.
+    void add_shots(const Drawn& t, std::size_t face) {
+        ++drawn_count_;
         const Window& window = tiles_.windows[face];
         const std::uint32_t column_lo = window.column(t.u_lo), column_hi = window.column(t.u_hi);
         const std::uint32_t row_lo = window.row(t.v_lo), row_hi = window.row(t.v_hi);
@@ -661,6 +673,7 @@ private:
     std::array<Shot, 64> shots_;
     std::size_t drawn_count_ = 0;
     std::size_t shot_count_ = 0;
+    Vec3d apex_ = is_radial ? to_double(raster_.pencil.apex()) : Vec3d{};
     double brink_ = 0;
     double reach_ = 0;
     bool reversed_ = tiles_.faces[0].is_reversed();
