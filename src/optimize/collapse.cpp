@@ -150,12 +150,12 @@ public:
 
     [[nodiscard]] WideBvh write() {
         if (tree_.is_empty()) return {};
-        out_.bounds = tree_.root().box();
+        out_.box = tree_.root().box();
         write_node(NodeId{0});
         for (const TriangleBlock& block : out_.blocks)
             for (std::size_t lane = 0; lane < TriangleBlock::width; ++lane) {
                 if (block.prims[lane] == no_prim) continue;
-                out_.bounds = unite(out_.bounds, bounds(block.triangle(lane)));
+                out_.vertex_bounds = unite(out_.vertex_bounds, bounds(block.triangle(lane)));
                 out_.largest_doubled_extent =
                     std::max(out_.largest_doubled_extent, block.doubled_extents[lane]);
             }

@@ -3,6 +3,7 @@
 
 #include "support/median_split.hpp"
 
+#include <raywise/bvh/box_frame.hpp>
 #include <raywise/bvh/bvh.hpp>
 #include <raywise/bvh/wide_bvh.hpp>
 #include <raywise/geometry/triangle_view.hpp>
@@ -22,7 +23,7 @@ public:
 
     [[nodiscard]] WideBvh make() {
         if (!tree_.is_empty()) {
-            out_.bounds = tree_.root().box();
+            out_.box = tree_.root().box();
             add_node(NodeId{0});
         }
         return std::move(out_);
@@ -74,6 +75,7 @@ private:
                 }
                 const PrimId prim = prims[i + lane];
                 block.set(lane, triangles_[prim], prim);
+                out_.vertex_bounds = unite(out_.vertex_bounds, bounds(triangles_[prim]));
                 out_.largest_doubled_extent =
                     std::max(out_.largest_doubled_extent, block.doubled_extents[lane]);
             }
@@ -92,6 +94,16 @@ inline WideBvh
 wide_tree(const TriangleView& triangles, std::size_t leaf_size = 4, std::size_t levels = 3) {
     const Bvh binary = median_split(triangles, leaf_size);
     return WideTreeMaker(binary, triangles, levels).make();
+}
+
+/// The same with boxes in another frame.
+inline WideBvh
+framed_tree(const TriangleView& triangles, const BoxFrame& frame, std::size_t leaf_size = 4) {
+    const FramedMesh mesh = to_frame(triangles, frame);
+    const Bvh binary = median_split(mesh.view(), leaf_size);
+    WideBvh tree = WideTreeMaker(binary, triangles, 3).make();
+    tree.frame = frame;
+    return tree;
 }
 
 } // namespace raywise::test_support

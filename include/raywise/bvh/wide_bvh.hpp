@@ -2,6 +2,7 @@
 // triangles. No heuristics. After [Wald08], [Ernst08].
 #pragma once
 
+#include <raywise/bvh/box_frame.hpp>
 #include <raywise/core/ids.hpp>
 #include <raywise/core/large_vector.hpp>
 #include <raywise/geometry/aabb.hpp>
@@ -121,7 +122,9 @@ struct WideBvh {
 
     LargeVector<WideNode> nodes;
     LargeVector<TriangleBlock> blocks;
-    Aabb bounds;                      ///< of all slots and all vertices
+    Aabb vertex_bounds;               ///< of the triangles, in the world
+    Aabb box;                         ///< of all slots of the root, in the frame
+    BoxFrame frame;                   ///< of the boxes; triangles are in the world always
     float largest_doubled_extent = 0; ///< of all blocks
 
     [[nodiscard]] bool is_empty() const { return nodes.empty(); }

@@ -40,7 +40,8 @@ namespace detail {
 /// per block over leaves, among those that keep some of the nodes of `tree`, by dynamic
 /// programming. Slots stand by rising measure: any-hit rays try the last, likeliest, first; a
 /// triangle stands at most once per leaf. Primitive i of `tree` is triangle i of `triangles`; the
-/// boxes are those of `tree`. No primitives: an empty tree. O(n) time, 40 bytes of temporary memory
+/// boxes are those of `tree`; where they are in another frame than the world, set `frame` of the
+/// result. No primitives: an empty tree. O(n) time, 40 bytes of temporary memory
 /// per node. The same bytes for any executor. Throws Error for parameters out of range and above
 /// 2^31 - 1 blocks.
 template <HitMeasure M>

@@ -18,13 +18,16 @@ namespace raywise::simd {
 /// With e = 2^-24, o the origin, i = fl(1 / d) and S the largest of |o| and the tree's coordinates,
 /// p * i + fl(-o * i) is off from (p - o) / d by at most e of itself for i, e of itself for the sum
 /// and e (|p| + |o|) |i| for the products, one of which a fused multiply-add saves. `shift` moves
-/// each plane outward by 8 e S |i|; `far_scale` is 16 e greater than i, which covers the relative
-/// errors of both ends and the rounding of t. So no box that holds a hit whose t, rounded, is in
-/// [t_min, limit] has entry > exit.
+/// each plane outward by 8 e S |i|. Where the boxes are in another frame, the ray is turned into it
+/// with errors of 4 e S for the origin and of 4 e m for the direction, m its largest component,
+/// which moves a point inside the bounds by 8 e S more, and the planes are off by 2 e S: 24 e S in
+/// all, so that 8 e S is 24 e S there. `far_scale` is 16 e greater than i, which covers the
+/// relative errors of both ends and the rounding of t. So no box that holds a hit whose t, rounded,
+/// is in [t_min, limit] has entry > exit.
 ///
-/// Where |d| is at most 2^-24 of the largest component m, the ray stays within 2^-22 S of the
-/// plane x = o as long as it is inside the bounds, where t <= 2 S / m. i = 2^22 / m and a shift of
-/// 4 S / m then let every such point through, zero directions included.
+/// Where |d| is at most e m, the ray stays within 16 e S of the plane x = o as long as it is inside
+/// the bounds, where t <= 2 S / m, in either frame. i = 2^22 / m and a shift of 8 S / m then let
+/// every such point through, zero directions included.
 struct PlaneMap {
     float near_scale, near_shift;
     float far_scale, far_shift;
@@ -61,8 +64,8 @@ namespace detail {
 
 inline constexpr float unit_roundoff = 0x1p-24F;
 
-HWY_INLINE PlaneMap map_planes(float o, float d, float inverse, float size, std::size_t axis) {
-    const float outward = 8 * unit_roundoff * size * std::abs(inverse) + 0x1p-100F;
+HWY_INLINE PlaneMap map_planes(float o, float d, float inverse, float slack, std::size_t axis) {
+    const float outward = slack * std::abs(inverse) + 0x1p-100F;
     const float far_inverse = inverse * (1 + 16 * unit_roundoff);
     constexpr std::size_t row = sizeof(WideNode::planes) / 6;
     const std::size_t lower = 2 * row * axis;
@@ -81,7 +84,7 @@ HWY_INLINE PlaneMap map_planes(float o, float d, float inverse, float size, std:
 HWY_NOINLINE inline PlaneMap
 map_flat_planes(float o, float d, float m, float size, std::size_t axis) {
     PlaneMap map = map_planes(o, d, std::copysign(0x1p22F / m, d), 0, axis);
-    const float outward = 4 / m * size;
+    const float outward = 8 / m * size;
     map.near_shift -= outward;
     map.far_shift += outward;
     return map;
@@ -107,8 +110,17 @@ HWY_INLINE bool prepare(const Ray& ray, const WideBvh& tree, WideRay& out) {
     constexpr float e = detail::unit_roundoff;
     const std::array<float, 3> o{ray.origin.x, ray.origin.y, ray.origin.z};
     const std::array<float, 3> d{ray.direction.x, ray.direction.y, ray.direction.z};
-    const std::array<float, 3> lo{tree.bounds.lo.x, tree.bounds.lo.y, tree.bounds.lo.z};
-    const std::array<float, 3> hi{tree.bounds.hi.x, tree.bounds.hi.y, tree.bounds.hi.z};
+    const std::array<float, 3> lo{
+        tree.vertex_bounds.lo.x, tree.vertex_bounds.lo.y, tree.vertex_bounds.lo.z
+    };
+    const std::array<float, 3> hi{
+        tree.vertex_bounds.hi.x, tree.vertex_bounds.hi.y, tree.vertex_bounds.hi.z
+    };
+    const std::array<float, 3> box_lo{tree.box.lo.x, tree.box.lo.y, tree.box.lo.z};
+    const std::array<float, 3> box_hi{tree.box.hi.x, tree.box.hi.y, tree.box.hi.z};
+    const std::array<float, 3> slopes{
+        tree.frame.slopes.x, tree.frame.slopes.y, tree.frame.slopes.z
+    };
     const auto larger = [](float a, float b) { return a > b ? a : b; };
 
     // Without branches: no predictor knows where a ray goes.
@@ -117,20 +129,31 @@ HWY_INLINE bool prepare(const Ray& ray, const WideBvh& tree, WideRay& out) {
                        ? std::size_t{2}
                        : static_cast<std::size_t>(std::abs(d[1]) > std::abs(d[0]));
     const float m = larger(across, std::abs(d[2]));
-    std::array<float, 3> sizes; // NOLINT(*-member-init): written next
-    for (std::size_t k = 0; k < 3; ++k)
-        sizes[k] = larger(larger(std::abs(lo[k]), std::abs(hi[k])), std::abs(o[k]));
+    const auto along = static_cast<std::size_t>(tree.frame.axis);
+    std::array<float, 3> frame_o; // NOLINT(*-member-init): written next
+    std::array<float, 3> frame_d; // NOLINT(*-member-init): written next
+    std::array<float, 3> sizes;   // NOLINT(*-member-init): written next
+    for (std::size_t k = 0; k < 3; ++k) {
+        frame_o[k] = o[k] - slopes[k] * o[along];
+        frame_d[k] = d[k] - slopes[k] * d[along];
+        sizes[k] = larger(
+            larger(larger(std::abs(box_lo[k]), std::abs(box_hi[k])), std::abs(frame_o[k])),
+            larger(larger(std::abs(lo[k]), std::abs(hi[k])), std::abs(o[k]))
+        );
+    }
     const float size = larger(larger(sizes[0], sizes[1]), sizes[2]);
     if (!(size <= 0x1p60F && m >= 0x1p-30F && m <= 0x1p30F)) [[unlikely]]
         return false;
 
-    std::array<float, 3> inverse; // NOLINT(*-member-init): written next
+    const bool is_world = tree.frame.is_world();
+    const float slack_unit = is_world ? 8 * e : 24 * e;
     for (std::size_t k = 0; k < 3; ++k) {
-        inverse[k] = 1 / d[k];
-        if (std::abs(d[k]) <= e * m) [[unlikely]]
-            out.axes[k] = detail::map_flat_planes(o[k], d[k], m, size, k);
+        if (std::abs(frame_d[k]) <= e * m) [[unlikely]]
+            out.axes[k] = detail::map_flat_planes(frame_o[k], frame_d[k], m, size, k);
         else
-            out.axes[k] = detail::map_planes(o[k], d[k], inverse[k], sizes[k], k);
+            out.axes[k] = detail::map_planes(
+                frame_o[k], frame_d[k], 1 / frame_d[k], slack_unit * (is_world ? sizes[k] : size), k
+            );
     }
     out.t_min = ray.t_min + 0.0F;
     out.t_max = ray.t_max;
@@ -145,14 +168,14 @@ HWY_INLINE bool prepare(const Ray& ray, const WideBvh& tree, WideRay& out) {
     out.origin_x = o[x];
     out.origin_y = o[y];
     out.origin_z = o[z];
-    out.inverse_z = inverse[z];
-    out.shear_x = d[x] * inverse[z];
-    out.shear_y = d[y] * inverse[z];
+    out.inverse_z = 1 / d[z];
+    out.shear_x = d[x] * out.inverse_z;
+    out.shear_y = d[y] * out.inverse_z;
 
     constexpr float up = 1 + 0x1p-10F; // for the roundings of the bounds themselves
     const float depth = larger(std::abs(lo[z] - o[z]), std::abs(hi[z] - o[z])) * up;
     const float r = (depth + tree.largest_doubled_extent) * up;
-    const float slowness = std::abs(inverse[z]) * up;
+    const float slowness = std::abs(out.inverse_z) * up;
     out.edge_error_scale = 24 * e * up * r;
     out.edge_error_shift = (e * r) * (e * up * (192 * depth + 64 * r)) + 0x1p-120F;
     out.t_error_scale = 5 * slowness;

@@ -17,6 +17,8 @@ namespace {
 /// Calls `visit(hit, limit)` for hits at t <= limit, which it may lower; returns whether to go on.
 template <class Visit>
 void traverse(const WideBvh& tree, const Ray& ray, Visit&& visit) {
+    // Only world boxes can be met by a ray of any size; in another frame every box is opened.
+    const bool is_world = tree.frame.is_world();
     const WideSlab slab(ray);
     float limit = ray.t_max;
     std::array<WideRef, WideBvh::max_depth*(WideNode::width - 1) + 1> stack;
@@ -43,7 +45,7 @@ void traverse(const WideBvh& tree, const Ray& ray, Visit&& visit) {
         }
         const WideNode& node = tree.nodes[current.index()];
         for (std::size_t slot = 0; slot < WideNode::width && node.is_used(slot); ++slot)
-            if (slab(node.box(slot), static_cast<double>(limit)).hit)
+            if (!is_world || slab(node.box(slot), static_cast<double>(limit)).hit)
                 stack[height++] = node.children[slot];
     }
 }

@@ -50,7 +50,7 @@ public:
             if (around != nullptr) {
                 ASSERT_TRUE(contains(*around, box));
             }
-            ASSERT_TRUE(contains(tree_.bounds, box));
+            ASSERT_TRUE(contains(tree_.box, box));
             const WideRef child = node.children[slot];
             if (child.is_leaf())
                 check_leaf(child.index(), box);
@@ -129,7 +129,7 @@ TEST(Collapse, KeepsEveryTriangleOnceInsideItsBoxes) {
         for (const auto& [prim, count] : checker.places)
             EXPECT_EQ(count, 1);
         for (std::size_t k = 0; k < soup.corners.size(); ++k) {
-            EXPECT_TRUE(contains(tree.bounds, bounds(soup.view()[to_prim(k)])));
+            EXPECT_TRUE(contains(tree.vertex_bounds, bounds(soup.view()[to_prim(k)])));
             EXPECT_GE(tree.largest_doubled_extent, doubled_extent(soup.view()[to_prim(k)]));
         }
         EXPECT_TRUE(
@@ -155,7 +155,7 @@ TEST(Collapse, TriangleOfSeveralLeavesStandsOnceInAMergedOne) {
 
 /// What collapse minimizes.
 double cost_of(const WideBvh& tree, double block_cost) {
-    double cost = half_area(tree.bounds);
+    double cost = half_area(tree.box);
     for (const WideNode& node : tree.nodes)
         for (std::size_t slot = 0; slot < WideNode::width && node.is_used(slot); ++slot) {
             const double weight = half_area(node.box(slot));

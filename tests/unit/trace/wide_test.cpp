@@ -169,6 +169,41 @@ TEST_P(Wide, AgreesWithBruteForceAtAnyScale) {
     EXPECT_GT(hits, 1000);
 }
 
+/// Any frame answers any ray: those along it, nearly along it, and all others.
+TEST_P(Wide, FramedTreesAgreeWithBruteForce) {
+    int hits = 0;
+    for (std::uint64_t i = 0; i < 600; ++i) {
+        Rng rng(25, i);
+        const auto how = static_cast<Coordinates>(rng.below(4));
+        const Soup soup = random_soup(rng, 64, how);
+        const auto slope = [&] { return 2 * static_cast<double>(rng.uniform()) - 1; };
+        const Vec3d direction{slope(), slope(), slope()};
+        const WideBvh tree = framed_tree(soup.view(), frame_along(direction), 1 + i % 4);
+        for (int k = 0; k < 30; ++k) {
+            Ray ray = random_ray(rng, soup, how);
+            if (k % 3 != 0) {
+                ray.direction = to_float(direction);
+                if (k % 3 == 1) {
+                    const double size = std::exp2(-static_cast<double>(rng.below(30)));
+                    ray.direction =
+                        to_float(direction + Vec3d{slope() * size, slope() * size, slope() * size});
+                }
+                // Through a vertex, about.
+                const Vec3 goal =
+                    soup.vertices[static_cast<std::size_t>(rng.below(soup.vertices.size()))];
+                ray.origin = goal - ray.direction * (4 * rng.uniform());
+            }
+            if (!is_valid(ray)) continue;
+            const auto expected = brute_force_closest_hit(soup.view(), ray);
+            expect_same(closest_hit(tree, ray), expected);
+            ASSERT_EQ(any_hit(tree, ray), expected.has_value());
+            if (HasFatalFailure()) FAIL() << i << ' ' << k;
+            if (expected) ++hits;
+        }
+    }
+    EXPECT_GT(hits, 2000);
+}
+
 TEST_P(Wide, RaysAlongTheAxesInTheFacesOfBoxesAreNotLost) {
     const ClosedMesh mesh = grid_box(4);
     std::vector<Vec3> vertices;
