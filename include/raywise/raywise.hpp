@@ -38,6 +38,7 @@
 #include <raywise/build/sweep.hpp>                   // IWYU pragma: export
 #include <raywise/build/top_down.hpp>                // IWYU pragma: export
 #include <raywise/build/tree_assembly.hpp>           // IWYU pragma: export
+#include <raywise/bvh/box_frame.hpp>                 // IWYU pragma: export
 #include <raywise/bvh/bvh.hpp>                       // IWYU pragma: export
 #include <raywise/bvh/cost_constants.hpp>            // IWYU pragma: export
 #include <raywise/bvh/refit.hpp>                     // IWYU pragma: export

@@ -42,8 +42,12 @@ struct Plan {
 /// Plans from the leaves up, as [Ylitie17] does.
 class Planner {
 public:
-    Planner(const Bvh& tree, const float* weights, const CollapseParams& params)
-        : tree_(tree), weights_(weights), params_(params), plans_(tree.nodes.size()) {
+    Planner(const Bvh& tree, const NodeWeights& nodes, const CollapseParams& params)
+        : tree_(tree)
+        , weights_(nodes.mass)
+        , promises_(nodes.promise)
+        , params_(params)
+        , plans_(tree.nodes.size()) {
         for (std::size_t i = tree.nodes.size(); i-- > 0;)
             plan(i);
     }
@@ -52,7 +56,7 @@ public:
 
     [[nodiscard]] float weight(NodeId id) const { return weights_[to_index(id)]; }
 
-    /// The slots that a wide node made of `id` has, by rising weight; equal ones left to right.
+    /// The slots that a wide node made of `id` has, by rising promise; equal ones left to right.
     struct Slots {
         std::array<NodeId, width> ids;
         std::size_t count = 0;
@@ -66,7 +70,7 @@ public:
             share(id, width, slots);
         const auto end = slots.ids.begin() + static_cast<std::ptrdiff_t>(slots.count);
         std::stable_sort(slots.ids.begin(), end, [&](NodeId a, NodeId b) {
-            return weight(a) < weight(b);
+            return promises_[to_index(a)] < promises_[to_index(b)];
         });
         return slots;
     }
@@ -138,6 +142,7 @@ private:
 
     const Bvh& tree_;
     const float* weights_;
+    const float* promises_;
     const CollapseParams& params_;
     LargeBuffer<Plan> plans_;
 };
@@ -225,12 +230,12 @@ private:
 WideBvh collapse_weighed(
     const Bvh& tree,
     const TriangleView& triangles,
-    const float* weights,
+    const NodeWeights& nodes,
     const CollapseParams& params,
     const Executor& /*executor*/
 ) {
     check(params);
-    const Planner plans(tree, weights, params);
+    const Planner plans(tree, nodes, params);
     return Writer(tree, triangles, plans).write();
 }
 
