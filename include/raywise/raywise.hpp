@@ -132,6 +132,7 @@
 #include <raywise/toplevel/served.hpp>               // IWYU pragma: export
 #include <raywise/toplevel/structure_choice.hpp>     // IWYU pragma: export
 #include <raywise/toplevel/traced_tree.hpp>          // IWYU pragma: export
+#include <raywise/toplevel/triangle_copy.hpp>        // IWYU pragma: export
 #include <raywise/trace/all_hits.hpp>                // IWYU pragma: export
 #include <raywise/trace/any_hit.hpp>                 // IWYU pragma: export
 #include <raywise/trace/brute_force.hpp>             // IWYU pragma: export

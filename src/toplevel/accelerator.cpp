@@ -117,10 +117,13 @@ AreaHandle Accelerator::operator[](AreaId id) const {
 AcceleratorMemory Accelerator::measure_memory() const {
     AcceleratorMemory memory;
     memory.global_tree = global_tree_.size_in_bytes();
+    std::size_t copy = 0;
     for (const LocalStructure& structure : locals_) {
         memory.local_trees += structure.tree.size_in_bytes();
         if (structure.grid) memory.grids += structure.grid->size_in_bytes();
+        if (structure.triangles) copy = structure.triangles->size_in_bytes();
     }
+    memory.grids += copy;
     memory.areas =
         areas_.capacity() * sizeof(InfluenceArea) + locals_.capacity() * sizeof(LocalStructure);
     memory.index = bytes(index_);

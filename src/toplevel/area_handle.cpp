@@ -2,6 +2,7 @@
 #include "toplevel/batches.hpp"
 
 #include <raywise/core/error.hpp>
+#include <raywise/pencil/inversion.hpp>
 #include <raywise/toplevel/accelerator.hpp>
 #include <raywise/toplevel/pencil_of.hpp>
 
@@ -87,18 +88,24 @@ bool AreaHandle::any_hit(const Ray& ray) const {
 }
 
 bool AreaHandle::are_exact(std::span<const Ray> rays, const Executor& executor) const {
-    const PencilGrid* grid = structure().grid.get();
-    if (grid == nullptr) return false;
+    const std::optional<Pencil>& pencil = structure().pencil;
+    if (!pencil) return false;
     std::atomic<bool> all = true;
     constexpr std::size_t chunk = 1 << 14;
     executor.for_each_chunk(rays.size(), chunk, [&](std::size_t begin, std::size_t end) {
         const auto part = rays.subspan(begin, end - begin);
         const bool held = std::all_of(part.begin(), part.end(), [&](const Ray& ray) {
-            return grid->covers(ray);
+            return is_valid(ray) && pencil->holds(ray);
         });
         if (!held) all = false;
     });
     return all;
+}
+
+bool AreaHandle::is_worth_drawing(std::size_t rays) const {
+    const auto& triangles = structure().triangles;
+    // Every triangle is looked at, which takes about as long as a tenth of a traced ray.
+    return triangles != nullptr && rays >= triangles->view().size() / 8;
 }
 
 void AreaHandle::closest_hits(
@@ -107,8 +114,12 @@ void AreaHandle::closest_hits(
     const Executor& executor
 ) const {
     detail::check_answers(rays.size(), hits.size());
-    if (!are_exact(rays, executor)) return detail::closest_batch(*this, rays, hits, executor);
-    structure().grid->closest_hits(
+    const LocalStructure& own = structure();
+    const bool draws = is_worth_drawing(rays.size());
+    if ((!own.grid && !draws) || !are_exact(rays, executor))
+        return detail::closest_batch(*this, rays, hits, executor);
+    if (draws) return closest_hits_once(own.triangles->view(), *own.pencil, rays, hits, executor);
+    own.grid->closest_hits(
         rays, hits, [&](const Ray& ray) { return closest_hit(ray).value_or(Hit{}); }, executor
     );
 }
@@ -119,10 +130,12 @@ void AreaHandle::any_hits(
     const Executor& executor
 ) const {
     detail::check_answers(rays.size(), occluded.size());
-    if (!are_exact(rays, executor)) return detail::any_batch(*this, rays, occluded, executor);
-    structure().grid->any_hits(
-        rays, occluded, [&](const Ray& ray) { return any_hit(ray); }, executor
-    );
+    const LocalStructure& own = structure();
+    const bool draws = is_worth_drawing(rays.size());
+    if ((!own.grid && !draws) || !are_exact(rays, executor))
+        return detail::any_batch(*this, rays, occluded, executor);
+    if (draws) return any_hits_once(own.triangles->view(), *own.pencil, rays, occluded, executor);
+    own.grid->any_hits(rays, occluded, [&](const Ray& ray) { return any_hit(ray); }, executor);
 }
 
 void AreaHandle::occluded(

@@ -8,8 +8,7 @@
 #include <raywise/toplevel/pencil_of.hpp>
 
 #include <algorithm>
-#include <array>
-#include <cstdint>
+#include <memory>
 #include <set>
 #include <string>
 #include <utility>
@@ -103,27 +102,6 @@ double measure_gain(const Accelerator& accelerator, AreaId id, const GainParams&
     return (cost_of(global_alone) - cost_of(with_area)) / static_cast<double>(params.rays);
 }
 
-/// A copy of some triangles, in the order of their list.
-class Subset {
-public:
-    Subset(const TriangleView& triangles, const std::vector<PrimId>& members) {
-        vertices_.reserve(3 * members.size());
-        corners_.reserve(members.size());
-        for (const PrimId member : members) {
-            const auto first = static_cast<std::uint32_t>(vertices_.size());
-            const auto& [v0, v1, v2] = triangles[member];
-            vertices_.insert(vertices_.end(), {v0, v1, v2});
-            corners_.push_back({first, first + 1, first + 2});
-        }
-    }
-
-    [[nodiscard]] TriangleView view() const { return {vertices_, corners_}; }
-
-private:
-    std::vector<Vec3> vertices_;
-    std::vector<std::array<std::uint32_t, 3>> corners_;
-};
-
 /// Primitive i becomes ids[i].
 void remap_prims(WideBvh& tree, const std::vector<PrimId>& ids) {
     for (TriangleBlock& block : tree.blocks) {
@@ -186,7 +164,7 @@ public:
 private:
     [[nodiscard]] std::size_t steps() const { return result_.areas_.size() + 1; }
 
-    [[nodiscard]] LocalStructure build_local(const InfluenceArea& area) const {
+    [[nodiscard]] LocalStructure build_local(const InfluenceArea& area) {
         LocalStructure structure;
         structure.pencil = pencil_of(area);
         structure.choice = choose(area, structure);
@@ -198,9 +176,12 @@ private:
                 build_pencil_grid(triangles_, *structure.pencil, {}, executor_)
             );
             break;
+        case StructureKind::inversion:
+            if (!copy_) copy_ = std::make_shared<const TriangleCopy>(triangles_);
+            structure.triangles = copy_;
+            break;
         case StructureKind::binary_tree:
         case StructureKind::wide_tree:
-        case StructureKind::framed_tree:
             build_local_tree(structure, area);
             break;
         }
@@ -218,7 +199,7 @@ private:
             structure.expected_cost = expected_cost(tree, area, params.local.binned.cost);
             structure.tree = TracedTree(std::move(tree), triangles_);
         } else {
-            const Subset subset(triangles_, members);
+            const TriangleCopy subset(triangles_, members);
             WideBvh tree = build_wide(
                 subset.view(),
                 area.distribution,
@@ -249,16 +230,22 @@ private:
             return choice;
         }
         choice.predictions.push_back({StructureKind::none, 0, global_ray_ns(area)});
-        if (structure.pencil) choice.predictions.push_back(predict_grid(triangles, executor_));
+        if (structure.pencil) {
+            choice.predictions.push_back(predict_grid(triangles, executor_));
+            choice.predictions.push_back(predict_inversion(triangles, executor_));
+        }
         choice.kind = cheapest(choice.predictions, choice.expected_rays).kind;
         return choice;
     }
 
     static void
     check_forced(const InfluenceArea& area, const LocalStructure& structure, StructureKind kind) {
-        if (kind == StructureKind::pencil_grid && !structure.pencil) {
+        const bool needs_pencil =
+            kind == StructureKind::pencil_grid || kind == StructureKind::inversion;
+        if (needs_pencil && !structure.pencil) {
             throw Error(
-                "accelerator: area '" + area.name + "' is not exact, so it has no pencil grid"
+                "accelerator: area '" + area.name + "' is not exact, so it can have no " +
+                std::string(name_of(kind))
             );
         }
     }
@@ -282,6 +269,7 @@ private:
     static constexpr std::size_t sampled = 256; ///< rays per prediction
 
     Accelerator& result_;
+    std::shared_ptr<const TriangleCopy> copy_; ///< shared by the areas that draw
     const TriangleView& triangles_;
     const Executor& executor_;
     const Progress& progress_;

@@ -11,8 +11,8 @@ namespace raywise::detail {
 /// Of tracing a wide tree: a node visit waits for its cache lines and for a guessed branch, which
 /// takes longer than its arithmetic.
 [[nodiscard]] inline double predicted_ns(const Counts& counts) {
-    constexpr double visit_ns = 12;
-    constexpr double test_ns = 3;
+    constexpr double visit_ns = 15;
+    constexpr double test_ns = 4;
     return visit_ns * static_cast<double>(counts.node_visits()) +
            test_ns * static_cast<double>(counts.prims);
 }
@@ -20,8 +20,16 @@ namespace raywise::detail {
 /// A pencil grid over so many triangles.
 [[nodiscard]] inline StructurePrediction predict_grid(double triangles, const Executor& executor) {
     constexpr double build_ns = 250; // per triangle, serial
-    constexpr double ray_ns = 25;
+    constexpr double ray_ns = 50;
     return {StructureKind::pencil_grid, build_ns * triangles / executor.threads(), ray_ns};
+}
+
+/// One batch of all rays, drawn over: nothing is built, but every triangle is looked at.
+[[nodiscard]] inline StructurePrediction
+predict_inversion(double triangles, const Executor& executor) {
+    constexpr double triangle_ns = 120;
+    constexpr double ray_ns = 80;
+    return {StructureKind::inversion, triangle_ns * triangles / executor.threads(), ray_ns};
 }
 
 } // namespace raywise::detail

@@ -22,6 +22,7 @@
 #include <raywise/toplevel/served.hpp>
 #include <raywise/toplevel/structure_choice.hpp>
 #include <raywise/toplevel/traced_tree.hpp>
+#include <raywise/toplevel/triangle_copy.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -81,7 +82,7 @@ struct AcceleratorParams {
 struct AcceleratorMemory {
     std::size_t global_tree = 0;
     std::size_t local_trees = 0;
-    std::size_t grids = 0;
+    std::size_t grids = 0; ///< and copies for inversions
     std::size_t areas = 0; ///< the areas themselves; a measured area's rays are shared, not counted
     std::size_t index = 0;
 
@@ -94,8 +95,9 @@ struct AcceleratorMemory {
 struct LocalStructure {
     StructureChoice choice; ///< what was built, and why
     TracedTree tree;        ///< of the tree kinds; its primitives are ids of the scene
-    std::shared_ptr<const PencilGrid> grid; ///< of the kind pencil_grid, else null
-    std::optional<Pencil> pencil;           ///< of exact areas, whatever was built
+    std::shared_ptr<const PencilGrid> grid;        ///< of the kind pencil_grid, else null
+    std::shared_ptr<const TriangleCopy> triangles; ///< of the kind inversion, else null; shared
+    std::optional<Pencil> pencil;                  ///< of exact areas, whatever was built
     double expected_cost = 0;        ///< of a ray that hits a tree's root, by the area's measure
     bool has_tree = false;           ///< whether queries that start in the region ask the tree
     std::optional<double> gain = {}; ///< cost saved per sampled ray, when GainParams asked for it
@@ -263,8 +265,8 @@ public:
     template <QueryObserver Observer>
     [[nodiscard]] bool any_hit(const Ray& ray, Observer& seen) const;
 
-    /// See Accelerator::closest_hits. Fastest when the pencil holds every ray: then large batches
-    /// are answered in the order of the grid's cells, whatever their own.
+    /// See Accelerator::closest_hits. Fastest when the pencil holds every ray: then a grid answers
+    /// in the order of its cells, and an inversion a large batch at once.
     void closest_hits(
         std::span<const Ray> rays,
         std::span<Hit> hits,
@@ -302,8 +304,11 @@ public:
 private:
     [[nodiscard]] const LocalStructure& structure() const;
 
-    /// Whether there is a grid and its pencil holds every ray.
+    /// Whether the area's pencil holds every ray.
     [[nodiscard]] bool are_exact(std::span<const Ray> rays, const Executor& executor) const;
+
+    /// Whether a batch of so many exact rays is cheaper drawn over than traced one by one.
+    [[nodiscard]] bool is_worth_drawing(std::size_t rays) const;
 
     const Accelerator* owner_;
     AreaId id_;

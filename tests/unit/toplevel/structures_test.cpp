@@ -104,10 +104,12 @@ TEST(Structures, BatchesOfExactRaysEqualSingleQueriesOnAnyNumberOfThreads) {
         InfluenceArea::radial("lamp", {.apex = {0.5, 3, 0.25}, .region = around})
     };
     const Executor four(4);
-    const Accelerator accelerator =
+    const Accelerator gridded =
         build_accelerator(scene, areas, forced(StructureKind::pencil_grid), four);
+    const Accelerator drawn =
+        build_accelerator(scene, areas, forced(StructureKind::inversion), four);
     const BinaryTree plain = plain_tree(scene);
-    for (const AreaHandle handle : {accelerator["sun"], accelerator["lamp"]}) {
+    for (const AreaHandle handle : {gridded["sun"], gridded["lamp"], drawn["sun"], drawn["lamp"]}) {
         Rng rng(52);
         std::vector<Ray> rays;
         for (int i = 0; i < 20'000; ++i) {
@@ -160,6 +162,11 @@ TEST(Structures, ChoiceFollowsTheExpectedRays) {
         return build_accelerator(scene, {sun}, params)["sun"].choice();
     };
     EXPECT_EQ(choice_for(0).kind, StructureKind::none);
+    for (const double rays : {1e4, 1e5, 1e6}) {
+        const StructureChoice choice = choice_for(rays);
+        EXPECT_EQ(choice.kind, cheapest(choice.predictions, rays).kind);
+        EXPECT_EQ(choice.predictions.size(), 3U);
+    }
     EXPECT_EQ(choice_for(1e9).kind, StructureKind::pencil_grid);
     EXPECT_EQ(choice_for(1e9).predictions.front().kind, StructureKind::none);
     const AcceleratorParams many{.use = {.expected_rays = 1e9}};
@@ -197,6 +204,7 @@ TEST(Structures, RefusesWhatCannotBe) {
         EXPECT_THROW(static_cast<void>(build_accelerator(scene, blurred, params)), Error);
     };
     refused(forced(StructureKind::pencil_grid));
+    refused(forced(StructureKind::inversion));
     AcceleratorParams params;
     params.global_structure = StructureKind::pencil_grid;
     refused(params);
