@@ -17,10 +17,9 @@ using detail::RaysAsked;
 using detail::RayTiles;
 using detail::Tile;
 
-void check_batch(const TriangleView& triangles, std::size_t rays, std::size_t hits) {
+void check_batch(std::size_t rays, std::size_t hits) {
     if (rays != hits) throw Error("inversion: as many answers as rays are needed");
     if (rays > 0x7FFFFFFF) throw Error("inversion: more than 2^31 - 1 rays");
-    static_cast<void>(triangles);
 }
 
 void draw_all(const Raster& raster, const Executor& executor) {
@@ -58,7 +57,7 @@ void any_hits_once(
     std::span<bool> hits,
     const Executor& executor
 ) {
-    check_batch(triangles, rays.size(), hits.size());
+    check_batch(rays.size(), hits.size());
     std::fill(hits.begin(), hits.end(), false);
     if (rays.empty()) return;
     RayTiles tiles(pencil, rays, RaysAsked::all, executor);
@@ -72,7 +71,7 @@ void closest_hits_once(
     std::span<Hit> hits,
     const Executor& executor
 ) {
-    check_batch(triangles, rays.size(), hits.size());
+    check_batch(rays.size(), hits.size());
     std::fill(hits.begin(), hits.end(), Hit{});
     if (rays.empty()) return;
     // Rays that run against each other meet triangles in opposite orders.
@@ -85,6 +84,13 @@ void closest_hits_once(
         }
         if (tiles.skipped == 0) break;
     }
+}
+
+double predicted_inversion_ns(Pencil::Kind kind, std::size_t triangles, std::size_t rays) {
+    // An apex costs divisions, and the search for the faces of the cube.
+    const double per_triangle = kind == Pencil::Kind::parallel ? 100 : 160;
+    constexpr double per_ray = 80;
+    return per_triangle * static_cast<double>(triangles) + per_ray * static_cast<double>(rays);
 }
 
 std::size_t inversion_bytes(std::size_t rays) {

@@ -1,6 +1,7 @@
 // A triangle as one picture shows it.
 #pragma once
 
+#include "pencil/inversion/extremes.hpp"
 #include "pencil/inversion/face.hpp"
 
 #include <raywise/core/ids.hpp>
@@ -54,10 +55,10 @@ HWY_INLINE Around look_around(Vec3d apex, const Triangle& triangle) {
     t.c = to_double(triangle.v2) - apex;
     t.lo = min(min(t.a, t.b), t.c);
     t.hi = max(max(t.a, t.b), t.c);
-    const auto greatest = [](const Vec3d& v) { return std::max(std::max(v.x, v.y), v.z); };
-    t.size = std::max(greatest(t.hi), greatest(-t.lo));
-    t.distance = std::max(std::max(greatest(t.lo), greatest(-t.hi)), 0.0);
-    if (t.distance < 0x1p-6 * t.size) t.distance = std::max(t.distance, plane_distance(t));
+    const auto greatest = [](const Vec3d& v) { return greatest_of(v.x, v.y, v.z); };
+    t.size = greater(greatest(t.hi), greatest(-t.lo));
+    t.distance = greater(greater(greatest(t.lo), greatest(-t.hi)), 0.0);
+    if (t.distance < 0x1p-6 * t.size) t.distance = greater(t.distance, plane_distance(t));
     return t;
 }
 
@@ -68,26 +69,26 @@ HWY_INLINE bool may_face(const Around& t, std::size_t face, double slack) {
     if (!(most > 0)) return false;
     const int x = (z + 1) % 3;
     const int y = (z + 2) % 3;
-    return std::max(t.lo[x], -t.hi[x]) <= most && std::max(t.lo[y], -t.hi[y]) <= most;
+    return greater(t.lo[x], -t.hi[x]) <= most && greater(t.lo[y], -t.hi[y]) <= most;
 }
 
 /// Sets the bounds that follow from the points.
 HWY_INLINE void measure_depth(Drawn& t) {
     const auto& [a, b, c] = t.p;
-    t.depth_lo = std::min(std::min(a.depth, b.depth), c.depth);
-    t.depth_hi = std::max(std::max(a.depth, b.depth), c.depth);
+    t.depth_lo = least_of(a.depth, b.depth, c.depth);
+    t.depth_hi = greatest_of(a.depth, b.depth, c.depth);
 }
 
 HWY_INLINE void measure_parallel(Drawn& t) {
     const auto& [a, b, c] = t.p;
     measure_depth(t);
-    t.u_lo = std::min(std::min(a.x, b.x), c.x);
-    t.u_hi = std::max(std::max(a.x, b.x), c.x);
-    t.v_lo = std::min(std::min(a.y, b.y), c.y);
-    t.v_hi = std::max(std::max(a.y, b.y), c.y);
-    t.size = std::max(
-        std::max(std::max(-t.u_lo, t.u_hi), std::max(-t.v_lo, t.v_hi)),
-        std::max(-t.depth_lo, t.depth_hi)
+    t.u_lo = least_of(a.x, b.x, c.x);
+    t.u_hi = greatest_of(a.x, b.x, c.x);
+    t.v_lo = least_of(a.y, b.y, c.y);
+    t.v_hi = greatest_of(a.y, b.y, c.y);
+    t.size = greater(
+        greater(greater(-t.u_lo, t.u_hi), greater(-t.v_lo, t.v_hi)),
+        greater(-t.depth_lo, t.depth_hi)
     );
 }
 
@@ -97,9 +98,8 @@ HWY_INLINE void measure_parallel(Drawn& t) {
 /// depth s, the ray is seen at most 2 |u| 2^-24 |s / z - 1| aside, |u| <= 1. A point where it meets
 /// a triangle at distance r > 8 * 2^-24 s is seen in the doubled window, hence z >= r / 2.
 HWY_INLINE double deviation(const Drawn& t, double reach) {
-    const double nearest =
-        std::max(t.distance / 2, std::min(std::min(t.p[0].h, t.p[1].h), t.p[2].h));
-    return 2.1 * 0x1p-24 * std::max(1.0, reach / nearest);
+    const double nearest = greater(t.distance / 2, least_of(t.p[0].h, t.p[1].h, t.p[2].h));
+    return 2.1 * 0x1p-24 * greater(1.0, reach / nearest);
 }
 
 /// Sets area and side from u and v, which are within `error` of the exact ones. False: the side is
@@ -108,7 +108,7 @@ HWY_INLINE bool find_side(Drawn& t, double error) {
     const double ax = t.u[1] - t.u[0], ay = t.v[1] - t.v[0];
     const double bx = t.u[2] - t.u[0], by = t.v[2] - t.v[0];
     const double across =
-        std::max(std::max(std::abs(ax), std::abs(bx)), std::max(std::abs(ay), std::abs(by)));
+        greater(greater(std::abs(ax), std::abs(bx)), greater(std::abs(ay), std::abs(by)));
     t.area = ax * by - ay * bx;
     t.side = t.area > 0 ? 1 : -1;
     const double bound = 8 * error * (across + error) + 0x1p-50 * across * across;

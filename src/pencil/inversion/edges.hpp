@@ -52,12 +52,12 @@ HWY_INLINE FlatCorners flat_corners(const Drawn& t, const Tile& tile) {
         x[i] = static_cast<float>(t.u[i] - tile.u);
         y[i] = static_cast<float>(t.v[i] - tile.v);
     }
-    x_lo = std::min(std::min(x[0], x[1]), x[2]);
-    x_hi = std::max(std::max(x[0], x[1]), x[2]);
-    y_lo = std::min(std::min(y[0], y[1]), y[2]);
-    y_hi = std::max(std::max(y[0], y[1]), y[2]);
-    greatest = std::max(std::max(-x_lo, x_hi), std::max(-y_lo, y_hi));
-    extent = std::max(x_hi - x_lo, y_hi - y_lo);
+    x_lo = least_of(x[0], x[1], x[2]);
+    x_hi = greatest_of(x[0], x[1], x[2]);
+    y_lo = least_of(y[0], y[1], y[2]);
+    y_hi = greatest_of(y[0], y[1], y[2]);
+    greatest = greater(greater(-x_lo, x_hi), greater(-y_lo, y_hi));
+    extent = greater(x_hi - x_lo, y_hi - y_lo);
     return corners;
 }
 
@@ -79,7 +79,7 @@ HWY_INLINE bool make_flat_edges(
     float aside
 ) {
     const auto& [x, y, x_lo, x_hi, y_lo, y_hi, across, extent] = corners;
-    const float greatest = std::max(across, std::max(tile.half_u, tile.half_v));
+    const float greatest = greater(across, greater(tile.half_u, tile.half_v));
     if (!(across > 0x1p-50F && greatest < 0x1p50F)) return false;
     const float bound = greatest * (0x1p-20F * across + 1.5F * 0x1p-20F * extent + 16 * noise) +
                         2.1F * extent * aside + 0x1p-120F;
@@ -113,12 +113,12 @@ void make_edges(Edges& edges, const Drawn& t, const Tile& tile, double aside) {
         h[i] = t.p[i].h;
         x[i] = t.p[i].x - tile.u * h[i];
         y[i] = t.p[i].y - tile.v * h[i];
-        across = std::max(across, std::max(std::abs(x[i]), std::abs(y[i])));
-        if constexpr (is_radial) along = std::max(along, std::abs(h[i]));
+        across = greater(across, greater(std::abs(x[i]), std::abs(y[i])));
+        if constexpr (is_radial) along = greater(along, std::abs(h[i]));
     }
     const double noise =
         0x1p-50 *
-        (t.size + along * (std::max(std::abs(tile.u), std::abs(tile.v)) + half_u + half_v));
+        (t.size + along * (greater(std::abs(tile.u), std::abs(tile.v)) + half_u + half_v));
     const double k_error = 20 * noise * (across + noise);
     const double n_error = 4 * noise * (along + (is_radial ? across : 0));
     std::array<double, 3> u{}, v{}, k{};
@@ -129,13 +129,13 @@ void make_edges(Edges& edges, const Drawn& t, const Tile& tile, double aside) {
         u[i] = y[a] * h[b] - h[a] * y[b];
         v[i] = h[a] * x[b] - x[a] * h[b];
         k[i] = x[a] * y[b] - y[a] * x[b];
-        greatest = std::max(
+        greatest = greater(
             greatest,
-            std::max(std::abs(k[i]), std::max(std::abs(u[i]) * half_u, std::abs(v[i]) * half_v))
+            greater(std::abs(k[i]), greater(std::abs(u[i]) * half_u, std::abs(v[i]) * half_v))
         );
     }
     const double volume = h[0] * k[0] + h[1] * k[1] + h[2] * k[2];
-    const double volume_error = 8 * std::max(along, is_radial ? across : 0) * k_error;
+    const double volume_error = 8 * greater(along, is_radial ? across : 0) * k_error;
     int side = t.side;
     edges.is_flat = false;
     edges.one_sided = true;
@@ -153,7 +153,7 @@ void make_edges(Edges& edges, const Drawn& t, const Tile& tile, double aside) {
     for (std::size_t i = 0; i < 3; ++i) {
         const double du = std::abs(u[i]);
         const double dv = std::abs(v[i]);
-        bound = std::max(
+        bound = greater(
             bound,
             (du + dv) * (aside + noise + 0x1p-148) +
                 8 * 0x1p-24 * (du * half_u + dv * half_v + std::abs(k[i])) +
@@ -186,11 +186,11 @@ public:
         if (!edges_.one_sided) return true;
         for (std::size_t i = 0; i < 3; ++i) {
             const float rest =
-                std::max(edges_.v[i] * lo, edges_.v[i] * hi) + edges_.k[i] + edges_.sure;
+                greater(edges_.v[i] * lo, edges_.v[i] * hi) + edges_.k[i] + edges_.sure;
             if (edges_.u[i] > 0) {
-                from = std::max(from, rest * per_u_[i]);
+                from = greater(from, rest * per_u_[i]);
             } else if (edges_.u[i] < 0) {
-                to = std::min(to, rest * per_u_[i]);
+                to = lesser(to, rest * per_u_[i]);
             } else if (rest < 0) {
                 return false;
             }

@@ -62,8 +62,8 @@ public:
     // NOLINTNEXTLINE(*-member-init): of the arrays, only what is counted is read
     explicit Drawing(const Raster& raster) : raster_(raster), tiles_(raster.tiles) {
         for (const Window& window : tiles_.windows) {
-            brink_ = std::max(brink_, window.brink);
-            reach_ = std::max(reach_, window.reach);
+            brink_ = greater(brink_, window.brink);
+            reach_ = greater(reach_, window.reach);
         }
     }
 
@@ -80,7 +80,7 @@ public:
                 return;
             }
             const double slack =
-                0x1p-40 + 2.1 * 0x1p-24 * std::max(1.0, 2 * reach_ / around.distance);
+                0x1p-40 + 2.1 * 0x1p-24 * greater(1.0, 2 * reach_ / around.distance);
             for (std::size_t f = 0; f < tiles_.faces.size(); ++f) {
                 const Window& window = tiles_.windows[f];
                 if (window.is_empty() || !may_face(around, f, slack)) continue;
@@ -170,15 +170,15 @@ private:
             return false;
         t.is_flat = false;
         t.side = 0;
-        if (std::min(std::min(a.h, b.h), c.h) > 0x1p-20 * t.size) {
+        if (least_of(a.h, b.h, c.h) > 0x1p-20 * t.size) {
             const std::array<double, 3> inverse{1 / a.h, 1 / b.h, 1 / c.h};
             t.u = {a.x * inverse[0], b.x * inverse[1], c.x * inverse[2]};
             t.v = {a.y * inverse[0], b.y * inverse[1], c.y * inverse[2]};
-            t.u_lo = std::min(std::min(t.u[0], t.u[1]), t.u[2]);
-            t.u_hi = std::max(std::max(t.u[0], t.u[1]), t.u[2]);
-            t.v_lo = std::min(std::min(t.v[0], t.v[1]), t.v[2]);
-            t.v_hi = std::max(std::max(t.v[0], t.v[1]), t.v[2]);
-            const double greatest = std::max(std::max(-t.u_lo, t.u_hi), std::max(-t.v_lo, t.v_hi));
+            t.u_lo = least_of(t.u[0], t.u[1], t.u[2]);
+            t.u_hi = greatest_of(t.u[0], t.u[1], t.u[2]);
+            t.v_lo = least_of(t.v[0], t.v[1], t.v[2]);
+            t.v_hi = greatest_of(t.v[0], t.v[1], t.v[2]);
+            const double greatest = greater(greater(-t.u_lo, t.u_hi), greater(-t.v_lo, t.v_hi));
             t.is_flat = greatest < 64 && find_side(t, 0x1p-50 * greatest);
             widen(t, slack + 0x1p-48 * greatest);
             return !is_beside(t, window);
@@ -290,9 +290,9 @@ private:
             float from = -whole.half_u, to = whole.half_u;
             if (!clip(below, above, from, to)) continue;
             const std::uint32_t first =
-                std::max(column_lo, window.column(whole.u + static_cast<double>(from) - room));
+                greater(column_lo, window.column(whole.u + static_cast<double>(from) - room));
             const std::uint32_t last =
-                std::min(column_hi, window.column(whole.u + static_cast<double>(to) + room));
+                lesser(column_hi, window.column(whole.u + static_cast<double>(to) + room));
             for (std::uint32_t column = first; column <= last; ++column)
                 add_shot(t, face, tiles[row * window.columns + column]);
         }
@@ -385,8 +385,8 @@ private:
                     hi = tile.v0 + static_cast<float>(row + 1) * per_row + extra;
                 float from = -tile.half_u, to = tile.half_u;
                 if (!clip(lo, hi, from, to)) continue;
-                const std::uint32_t first = std::max(column_lo, tile.column(from - room));
-                const std::uint32_t last = std::min(column_hi, tile.column(to + room));
+                const std::uint32_t first = greater(column_lo, tile.column(from - room));
+                const std::uint32_t last = lesser(column_hi, tile.column(to + room));
                 if (first <= last) draw_row(row, first, last);
             }
         }
@@ -601,7 +601,7 @@ private:
         const FaceRay seen = face.ray<is_radial>(ray, leaves);
         const double depth = face.depth_at(ray, best->t);
         const double margin = 16 * 0x1p-24 * (std::abs(depth) + std::abs(seen.start) + seen.tiny);
-        tiles_.far[slot] = std::min(tiles_.far[slot], static_cast<float>(depth + margin));
+        tiles_.far[slot] = lesser(tiles_.far[slot], static_cast<float>(depth + margin));
         tiles_.least[slot] = static_cast<float>(depth - margin);
     }
 
@@ -648,8 +648,8 @@ private:
                 tiles_.v[b] = tiles_.v[a];
                 tiles_.near[b] = tiles_.near[a];
                 tiles_.far[b] = tiles_.far[a];
-                near = std::min(near, tiles_.near[b]);
-                far = std::max(far, tiles_.far[b]);
+                near = lesser(near, tiles_.near[b]);
+                far = greater(far, tiles_.far[b]);
                 tiles_.excluded[b] = tiles_.excluded[a];
                 tiles_.index[b] = tiles_.index[a];
             }

@@ -114,7 +114,7 @@ make_windows(const Pencil& pencil, const std::vector<Face>& faces, std::span<con
             double extent_v = 0;
             set_range(samples[f].u, window.u, extent_u);
             set_range(samples[f].v, window.v, extent_v);
-            const double wanted = std::max(
+            const double wanted = greater(
                 1.0,
                 static_cast<double>(rays.size()) * static_cast<double>(n) /
                     static_cast<double>(total * rays_per_tile)
@@ -122,7 +122,7 @@ make_windows(const Pencil& pencil, const std::vector<Face>& faces, std::span<con
             const double aspect = extent_u > 0 && extent_v > 0 ? extent_u / extent_v : 1;
             const double columns = std::clamp(std::sqrt(wanted * aspect), 1.0, wanted);
             window.columns = static_cast<std::uint32_t>(columns);
-            window.rows = static_cast<std::uint32_t>(std::max(1.0, wanted / columns));
+            window.rows = static_cast<std::uint32_t>(greater(1.0, wanted / columns));
             window.per_u = extent_u > 0 ? window.columns / extent_u : 0;
             window.per_v = extent_v > 0 ? window.rows / extent_v : 0;
         }
@@ -138,30 +138,30 @@ void sort_tile(RayTiles& to, Tile& tile, std::span<const SeenRay> rays, float ti
     float u_lo = infinity, u_hi = -infinity, v_lo = infinity, v_hi = -infinity;
     float near = infinity, far = -infinity;
     for (const SeenRay& ray : rays) {
-        u_lo = std::min(u_lo, ray.u);
-        u_hi = std::max(u_hi, ray.u);
-        v_lo = std::min(v_lo, ray.v);
-        v_hi = std::max(v_hi, ray.v);
-        near = std::min(near, ray.near);
-        far = std::max(far, ray.far);
-        tile.start = std::max(tile.start, ray.start);
+        u_lo = lesser(u_lo, ray.u);
+        u_hi = greater(u_hi, ray.u);
+        v_lo = lesser(v_lo, ray.v);
+        v_hi = greater(v_hi, ray.v);
+        near = lesser(near, ray.near);
+        far = greater(far, ray.far);
+        tile.start = greater(tile.start, ray.start);
     }
     tile.near.store(near, std::memory_order_relaxed);
     tile.far.store(far, std::memory_order_relaxed);
     tile.scale = tile.start + tiny;
     if (!rays.empty()) {
-        tile.half_u = std::max(-u_lo, u_hi);
-        tile.half_v = std::max(-v_lo, v_hi);
+        tile.half_u = greater(-u_lo, u_hi);
+        tile.half_v = greater(-v_lo, v_hi);
         tile.u0 = u_lo;
         tile.v0 = v_lo;
         const double extent_u = static_cast<double>(u_hi) - static_cast<double>(u_lo);
         const double extent_v = static_cast<double>(v_hi) - static_cast<double>(v_lo);
         const double wanted =
-            std::max(1.0, static_cast<double>(rays.size()) / static_cast<double>(rays_per_bin));
+            greater(1.0, static_cast<double>(rays.size()) / static_cast<double>(rays_per_bin));
         const double aspect = extent_u > 0 && extent_v > 0 ? extent_u / extent_v : 1;
         const double columns = std::clamp(std::sqrt(wanted * aspect), 1.0, wanted);
         tile.columns = static_cast<std::uint32_t>(columns);
-        tile.rows = static_cast<std::uint32_t>(std::max(1.0, wanted / columns));
+        tile.rows = static_cast<std::uint32_t>(greater(1.0, wanted / columns));
         const auto per = [](double count, double extent) {
             const auto p = static_cast<float>(count / extent);
             return extent > 0 && std::isfinite(p) ? p : 0.0F;
@@ -258,7 +258,7 @@ void RayTiles::sort(
     const RunningOf running_of(pencil);
     const LargeBuffer<Placed> places(rays.size());
     // At most 32 chunks, so that their counts stay few.
-    const std::size_t chunk = std::max<std::size_t>(16384, rays.size() / 32 + 1);
+    const std::size_t chunk = greater<std::size_t>(16384, rays.size() / 32 + 1);
     std::vector<Share> shares((rays.size() + chunk - 1) / chunk);
     executor.for_each_chunk(rays.size(), chunk, [&](std::size_t begin, std::size_t end) {
         Share& share = shares[begin / chunk];
@@ -287,7 +287,7 @@ void RayTiles::sort(
     const std::vector<std::uint32_t> firsts = lay_out(shares);
     double tiny = 0;
     for (const Window& window : windows)
-        tiny = std::max(tiny, window.tiny * (1 + 0x1p-22));
+        tiny = greater(tiny, window.tiny * (1 + 0x1p-22));
 
     const LargeBuffer<SeenRay> sorted(firsts.back());
     executor.for_each_chunk(rays.size(), chunk, [&](std::size_t begin, std::size_t end) {

@@ -1,6 +1,7 @@
 // The rays of a batch, sorted into the tiles of their pictures and the bins of their tiles.
 #pragma once
 
+#include "pencil/inversion/extremes.hpp"
 #include "pencil/inversion/face.hpp"
 
 #include <raywise/core/executor.hpp>
@@ -54,23 +55,23 @@ struct Window {
     [[nodiscard]] std::uint32_t row(double at) const { return place((at - v) * per_v, rows); }
 
     void include(const Window& part) {
-        u_lo = std::min(u_lo, part.u_lo);
-        u_hi = std::max(u_hi, part.u_hi);
-        v_lo = std::min(v_lo, part.v_lo);
-        v_hi = std::max(v_hi, part.v_hi);
-        brink = std::max(brink, part.brink);
-        tiny = std::max(tiny, part.tiny);
-        reach = std::max(reach, part.reach);
+        u_lo = lesser(u_lo, part.u_lo);
+        u_hi = greater(u_hi, part.u_hi);
+        v_lo = lesser(v_lo, part.v_lo);
+        v_hi = greater(v_hi, part.v_hi);
+        brink = greater(brink, part.brink);
+        tiny = greater(tiny, part.tiny);
+        reach = greater(reach, part.reach);
     }
 
     void include(const FaceRay& ray) {
-        u_lo = std::min(u_lo, ray.u);
-        u_hi = std::max(u_hi, ray.u);
-        v_lo = std::min(v_lo, ray.v);
-        v_hi = std::max(v_hi, ray.v);
-        brink = std::max(brink, ray.brink);
-        tiny = std::max(tiny, ray.tiny);
-        reach = std::max(reach, std::abs(ray.start));
+        u_lo = lesser(u_lo, ray.u);
+        u_hi = greater(u_hi, ray.u);
+        v_lo = lesser(v_lo, ray.v);
+        v_hi = greater(v_hi, ray.v);
+        brink = greater(brink, ray.brink);
+        tiny = greater(tiny, ray.tiny);
+        reach = greater(reach, std::abs(ray.start));
     }
 };
 

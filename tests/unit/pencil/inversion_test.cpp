@@ -298,5 +298,12 @@ TEST(Inversion, MemoryIsAFewDozenBytesPerRay) {
     EXPECT_LT(inversion_bytes(1'000'000), 100'000'000U);
 }
 
+TEST(Inversion, PredictionGrowsWithRaysAndTriangles) {
+    constexpr auto kind = Pencil::Kind::parallel;
+    EXPECT_EQ(predicted_inversion_ns(kind, 0, 0), 0);
+    EXPECT_GT(predicted_inversion_ns(kind, 2000, 500), predicted_inversion_ns(kind, 1000, 500));
+    EXPECT_GT(predicted_inversion_ns(kind, 1000, 900), predicted_inversion_ns(kind, 1000, 500));
+}
+
 } // namespace
 } // namespace raywise
