@@ -68,7 +68,8 @@ template <HitMeasure M>
         pivot = tree.parent(pivot);
         rest = unite(rest, tree.box(sibling));
         const auto mass = static_cast<double>(tree.mass(pivot));
-        saved += mass - static_cast<double>(tree.mass_of(rest));
+        // A measure may be dear, and far up nothing shrinks any more.
+        if (!(rest == tree.box(pivot))) saved += mass - static_cast<double>(tree.mass_of(rest));
         consider(pivot, saved - mass);
     }
     return best;
