@@ -15,8 +15,9 @@ namespace {
 
 constexpr std::int32_t never = std::numeric_limits<std::int32_t>::max();
 
-/// Splitting pays when the children have less than this share of 16 times the references.
-constexpr double worthwhile_share = 0.5;
+/// Splitting pays when the children together have less than so many times the references: longer
+/// triangles would be listed again and again.
+constexpr double worthwhile_growth = 2.5;
 
 /// Depths of a list are below this and what planes add to it.
 constexpr std::int32_t greatest_depth = 16383;
@@ -46,7 +47,8 @@ Cell CellBuilder::build(std::span<const std::uint32_t> pieces, const Window& win
              std::max(depth_units(map_, least) - 1, 0),
              depth_units(map_, greatest) + 1,
              index,
-             piece.prim}
+             piece.prim,
+             false}
         );
     }
     Cell cell;
@@ -119,7 +121,7 @@ bool CellBuilder::split(
                 ++total;
             }
     }
-    const auto most = worthwhile_share * children * static_cast<double>(references.size());
+    const auto most = worthwhile_growth * static_cast<double>(references.size());
     if (static_cast<double>(total) > most) return false;
 
     ++statistics_.splits;
@@ -163,6 +165,7 @@ void CellBuilder::merge_parts(std::vector<Reference>& references) const {
         place.least_v = std::min(place.least_v, reference.place.least_v);
         place.greatest_v = std::max(place.greatest_v, reference.place.greatest_v);
         other->least = std::min(other->least, reference.least);
+        other->is_merged = true;
     }
     references.resize(kept);
 }
@@ -237,7 +240,8 @@ CellBuilder::LinearDepth CellBuilder::linear_depth(
     const auto flat = static_cast<std::int16_t>((reference.least - base) >> depth_shift);
     const LinearDepth constant{0, 0, static_cast<std::uint16_t>(flat)};
     const Piece& piece = pieces_[reference.piece];
-    if (piece.is_part) return constant;
+    // The plane of one snapped part says nothing sure of the others.
+    if (reference.is_merged) return constant;
     const auto plane = key_plane(piece);
     if (!plane) return constant;
     const Footprint& bounds = reference.place;

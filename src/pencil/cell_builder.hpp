@@ -46,6 +46,7 @@ private:
         std::int32_t greatest; ///< depth, in units
         std::uint32_t piece;
         PrimId prim;
+        bool is_merged; ///< whether it stands for several pieces of the triangle
     };
 
     /// A reference's depths as a list has them.

@@ -2,6 +2,7 @@
 #include "pencil/face_map.hpp"
 #include "pencil/grid_data.hpp"
 #include "pencil/kernels.hpp"
+#include "pencil/sharp_filter.hpp"
 
 #include <raywise/geometry/ray_triangle.hpp>
 
@@ -386,8 +387,8 @@ HWY_INLINE PrimId pop(const std::byte* ids, std::uint32_t& bits) {
 template <class Count>
 HWY_NOINLINE bool
 is_hit_after_all(const Grid& grid, const Ray& ray, const Line& line, PrimId id, Count count) {
-    const Crossing crossing = cross(line, record(grid, id));
-    if (crossing.finding != Finding::doubt) return crossing.finding == Finding::hit;
+    if (line.doubt < 1)
+        if (const auto hit = sharp_hit(ray, record(grid, id), line.at_z / 3)) return *hit;
     count.decided();
     return decide(grid, ray, id, ray.t_max).has_value();
 }
