@@ -7,6 +7,7 @@
 #define RAYWISE_TRACE_SIMD_WIDE_TRAVERSE
 #endif
 
+#include "trace/simd/lanes_of_bits.hpp"
 #include "trace/simd/wide_lanes.inl.hpp"
 #include "trace/simd/wide_ray.hpp"
 
@@ -99,6 +100,20 @@ constexpr std::uint32_t done = 0xFFFFFFFFU;
 using EightKeys = hn::RebindToUnsigned<Eight>;
 using Keys = hn::Vec<EightKeys>;
 
+/// The lanes whose bits are set, in order, then any.
+HWY_INLINE Keys compressed(Keys v, std::uint32_t bits) {
+    const EightKeys d;
+#if HWY_TARGET == HWY_AVX3
+    const std::uint8_t byte = static_cast<std::uint8_t>(bits);
+    return hn::Compress(v, hn::LoadMaskBits(d, &byte));
+#else
+    // Highway's own table is copied to the stack at every use by g++ 12.
+    const hn::Rebind<std::uint8_t, EightKeys> bytes;
+    const auto order = hn::PromoteTo(d, hn::LoadU(bytes, lanes_of_bits[bits].data()));
+    return hn::TableLookupLanes(v, hn::IndicesFromVec(d, order));
+#endif
+}
+
 /// By falling value: a bitonic network without branches. [Batcher68]
 HWY_INLINE Keys sorted_down(Keys v) {
     const EightKeys d;
@@ -144,9 +159,10 @@ HWY_INLINE std::size_t drop_beyond(Stack& stack, std::size_t height, float reach
             hn::FirstN(d, height - i)
         );
         // What this overwrites has been read.
-        hn::StoreU(hn::Compress(keys, is_near), d, stack.keys.data() + kept);
-        hn::StoreU(hn::Compress(refs, is_near), d, stack.refs.data() + kept);
-        kept += hn::CountTrue(d, is_near);
+        const std::uint32_t bits = bits_of(d, is_near);
+        hn::StoreU(compressed(keys, bits), d, stack.keys.data() + kept);
+        hn::StoreU(compressed(refs, bits), d, stack.refs.data() + kept);
+        kept += static_cast<std::size_t>(std::popcount(bits));
     }
     return kept;
 }
@@ -241,9 +257,7 @@ traverse(const WideBvh& tree, const WideRay& ray, Observer& seen, OpenBlock&& op
                 const auto order = hn::IndicesFromVec(dk, hn::And(sorted, hn::Set(dk, 7U)));
                 hn::StoreU(hn::TableLookupLanes(refs, order), dk, stack.refs.data() + height);
             } else {
-                hn::StoreU(
-                    hn::Compress(refs, hn::RebindMask(dk, is_met)), dk, stack.refs.data() + height
-                );
+                hn::StoreU(compressed(refs, hits), dk, stack.refs.data() + height);
                 next = children[31 - std::countl_zero(hits)];
             }
             // The last one pushed is next; the one below it most likely after that.
