@@ -12,7 +12,7 @@
 
 namespace raywise {
 
-BoxFrame frame_along(Vec3d direction) {
+BoxFrame box_frame_along(Vec3d direction) {
     if (!is_finite(direction) || direction == Vec3d{})
         throw Error("frame: a direction must be finite and not zero");
     BoxFrame frame;

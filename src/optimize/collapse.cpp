@@ -69,9 +69,13 @@ public:
         else
             share(id, width, slots);
         const auto end = slots.ids.begin() + static_cast<std::ptrdiff_t>(slots.count);
-        std::stable_sort(slots.ids.begin(), end, [&](NodeId a, NodeId b) {
-            return promises_[to_index(a)] < promises_[to_index(b)];
-        });
+        // By insertion: stable, and eight slots at most.
+        for (auto next = slots.ids.begin(); next != end; ++next) {
+            const auto is_less = [&](NodeId a, NodeId b) {
+                return promises_[to_index(a)] < promises_[to_index(b)];
+            };
+            std::rotate(std::upper_bound(slots.ids.begin(), next, *next, is_less), next, next + 1);
+        }
         return slots;
     }
 

@@ -18,6 +18,7 @@ std::size_t index_of(AreaId id) {
 } // namespace
 
 float Accelerator::proven_end(AreaId area, const Ray& ray) const {
+    if (local(area).is_whole) return std::numeric_limits<float>::infinity();
     const float exit = exit_parameter(areas_[index_of(area)].region, ray);
     // A hit's t was rounded: relative to a normal number that is within the margin of membership,
     // below the normal numbers, or from infinity, it might not be.
@@ -71,7 +72,9 @@ Accelerator::Candidates Accelerator::candidates_of(const Ray& ray) const {
 Accelerator::Candidates Accelerator::candidates_in(AreaId area, const Ray& ray) const {
     Candidates only;
     if (!local(area).has_tree) return only;
-    if (!contains(areas_[index_of(area)].region, to_double(ray.origin))) return only;
+    const bool is_served =
+        local(area).is_whole || contains(areas_[index_of(area)].region, to_double(ray.origin));
+    if (!is_served) return only;
     only.items[only.count++] = {area, proven_end(area, ray)};
     return only;
 }

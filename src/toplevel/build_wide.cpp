@@ -2,6 +2,7 @@
 
 #include <raywise/build/binned.hpp>
 #include <raywise/build/spatial.hpp>
+#include <raywise/bvh/box_frame.hpp>
 #include <raywise/core/error.hpp>
 #include <raywise/core/function_ref.hpp>
 #include <raywise/geometry/mixed_measure.hpp>
@@ -9,6 +10,8 @@
 #include <raywise/optimize/reinsertion.hpp>
 #include <raywise/toplevel/build_tree.hpp>
 
+#include <cmath>
+#include <numbers>
 #include <type_traits>
 #include <variant>
 
@@ -23,6 +26,39 @@ struct SomeMeasure {
     [[nodiscard]] float operator()(const Aabb& box) const { return mass(box); }
 };
 
+/// The share of rays within a small angle of the frame's axis that meet a box of the frame: its
+/// end, and as much of its sides as the mean slope shows.
+struct AlongAxis {
+    int axis;
+    float mean_slope;
+
+    [[nodiscard]] float operator()(const Aabb& box) const {
+        if (box.is_empty()) return 0;
+        const Vec3 size = box.size();
+        const float u = size[(axis + 1) % 3];
+        const float v = size[(axis + 2) % 3];
+        return u * v + mean_slope * size[axis] * (u + v);
+    }
+};
+
+/// Two triangles in a leaf at most: collapsing chooses which to join.
+constexpr BinnedParams fine_leaves{.max_leaf_size = 2};
+
+template <HitMeasure M>
+Bvh build_binary(
+    const TriangleView& triangles,
+    const M& measure,
+    TreeQuality quality,
+    const Executor& executor
+) {
+    if (quality == TreeQuality::fast) {
+        const BuildInput input = build_input_of(triangles, executor);
+        return build_binned(input.boxes, measure, fine_leaves, executor);
+    }
+    const Bvh tree = build_spatial(triangles, measure, {.binned = fine_leaves}, executor);
+    return reinsert(tree, measure, {}, executor);
+}
+
 template <HitMeasure M>
 WideBvh build(
     const TriangleView& triangles,
@@ -30,14 +66,9 @@ WideBvh build(
     TreeQuality quality,
     const Executor& executor
 ) {
-    Bvh tree;
-    if (quality == TreeQuality::high) {
-        tree = build_spatial(triangles, measure, {}, executor);
-        tree = reinsert(tree, measure, {}, executor);
-    } else {
-        tree = build_binned(build_input_of(triangles, executor).boxes, measure, {}, executor);
-    }
-    return collapse(tree, triangles, measure, {}, executor);
+    return collapse(
+        build_binary(triangles, measure, quality, executor), triangles, measure, {}, executor
+    );
 }
 
 Aabb bounds_of(const TriangleView& triangles) {
@@ -75,6 +106,29 @@ WideBvh build_wide(
         },
         measure_of(distribution)
     );
+}
+
+WideBvh build_framed(
+    const TriangleView& triangles,
+    Vec3 direction,
+    double cone_half_angle_deg,
+    TreeQuality quality,
+    const Executor& executor
+) {
+    if (!(cone_half_angle_deg >= 0 && cone_half_angle_deg <= 60))
+        throw Error("build_framed: cone_half_angle_deg must be in [0, 60]");
+    const BoxFrame frame = box_frame_along(to_double(direction));
+    const FramedMesh mesh = to_frame(triangles, frame, executor);
+    // |cos| averages 2 / pi over the directions around the axis; a trace of the surface area keeps
+    // boxes that stand along the axis from being free.
+    const double slope = std::tan(cone_half_angle_deg * std::numbers::pi / 180);
+    const AlongAxis along{frame.axis, static_cast<float>(slope * 2 / std::numbers::pi * 2 / 3)};
+    const MixedMeasure measure(along, bounds_of(mesh.view()));
+    WideBvh tree = collapse(
+        build_binary(mesh.view(), measure, quality, executor), triangles, measure, {}, executor
+    );
+    tree.frame = frame;
+    return tree;
 }
 
 } // namespace raywise

@@ -6,6 +6,8 @@
 #include <raywise/toplevel/structure_choice.hpp>
 #include <raywise/trace/observer.hpp>
 
+#include <cstddef>
+
 namespace raywise::detail {
 
 /// Of tracing a wide tree: a node visit waits for its cache lines and for a guessed branch, which
@@ -22,6 +24,14 @@ namespace raywise::detail {
     constexpr double build_ns = 250; // per triangle, serial
     constexpr double ray_ns = 50;
     return {StructureKind::pencil_grid, build_ns * triangles / executor.threads(), ray_ns};
+}
+
+/// A framed tree over so many triangles; its rays must be counted.
+[[nodiscard]] inline StructurePrediction
+predict_framed(std::size_t triangles, const Executor& executor) {
+    constexpr double build_ns = 4000; // per triangle, serial
+    const auto count = static_cast<double>(triangles);
+    return {StructureKind::framed_tree, build_ns * count / executor.threads(), 0};
 }
 
 /// One batch of all rays, drawn over: nothing is built, but every triangle is looked at.

@@ -39,6 +39,8 @@ std::string_view name_of(StructureKind kind) {
         return "binary_tree";
     case StructureKind::wide_tree:
         return "wide_tree";
+    case StructureKind::framed_tree:
+        return "framed_tree";
     case StructureKind::pencil_grid:
         return "pencil_grid";
     case StructureKind::inversion:

@@ -32,7 +32,7 @@ struct BoxFrame {
 
 /// The frame whose `axis` rays of this direction run along. Throws Error when the direction is zero
 /// or not finite.
-[[nodiscard]] BoxFrame frame_along(Vec3d direction);
+[[nodiscard]] BoxFrame box_frame_along(Vec3d direction);
 
 /// Triangles in a frame, for builders to make a tree of.
 struct FramedMesh {

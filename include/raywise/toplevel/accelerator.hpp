@@ -98,8 +98,9 @@ struct LocalStructure {
     std::shared_ptr<const PencilGrid> grid;        ///< of the kind pencil_grid, else null
     std::shared_ptr<const TriangleCopy> triangles; ///< of the kind inversion, else null; shared
     std::optional<Pencil> pencil;                  ///< of exact areas, whatever was built
-    double expected_cost = 0;        ///< of a ray that hits a tree's root, by the area's measure
-    bool has_tree = false;           ///< whether queries that start in the region ask the tree
+    double expected_cost = 0; ///< of a ray that hits a tree's root, by the area's measure
+    bool is_whole = false;    ///< whether the tree is over all triangles, not only the region's
+    bool has_tree = false;    ///< whether queries that start in the region ask the tree
     std::optional<double> gain = {}; ///< cost saved per sampled ray, when GainParams asked for it
 };
 

@@ -5,6 +5,7 @@
 #include <raywise/core/executor.hpp>
 #include <raywise/distribution/distribution.hpp>
 #include <raywise/geometry/triangle_view.hpp>
+#include <raywise/geometry/vec.hpp>
 
 #include <cstdint>
 
@@ -30,6 +31,17 @@ enum class TreeQuality : std::uint8_t {
     const TriangleView& triangles,
     const Distribution& distribution,
     double surface_share = 0.1,
+    TreeQuality quality = TreeQuality::high,
+    const Executor& executor = serial_executor()
+);
+
+/// A wide tree for rays within `cone_half_angle_deg` (in [0, 60]) of `direction`, its boxes in the
+/// sheared frame of that direction: for slanted suns over organic scenes; walls that stand along
+/// the axes are better off in the world's. As above.
+[[nodiscard]] WideBvh build_framed(
+    const TriangleView& triangles,
+    Vec3 direction,
+    double cone_half_angle_deg,
     TreeQuality quality = TreeQuality::high,
     const Executor& executor = serial_executor()
 );

@@ -16,13 +16,15 @@ enum class StructureKind : std::uint8_t {
     none,        ///< nothing of its own: the global tree
     binary_tree, ///< a binary tree over the region's triangles, to be watched node by node
     wide_tree,   ///< a wide tree over the region's triangles, built for the area's rays
+    framed_tree, ///< a wide tree over all triangles, its boxes in the sheared frame of the area's
+                 ///< rays; parallel areas only
     pencil_grid, ///< a pencil grid over all triangles; exact areas only
     /// Nothing is built: a batch of exact rays is gridded itself, and the triangles are drawn over
     /// it; single rays go to the global tree. Exact areas only.
     inversion,
 };
 
-/// "none", "binary_tree", "wide_tree", "pencil_grid" or "inversion".
+/// "none", "binary_tree", "wide_tree", "framed_tree", "pencil_grid" or "inversion".
 [[nodiscard]] std::string_view name_of(StructureKind kind);
 
 /// What a caller knows of an area's future.
@@ -30,7 +32,7 @@ struct AreaUse {
     /// Over the life of the accelerator; >= 0. Absent: ten for every triangle of the scene.
     std::optional<double> expected_rays = {};
     /// Forced; absent: the cheapest in total by prediction. An area that is not exact can have no
-    /// pencil grid and no inversion: Error.
+    /// pencil grid and no inversion, one that is not parallel no framed tree: Error.
     std::optional<StructureKind> structure = {};
 };
 

@@ -47,6 +47,10 @@ public:
     /// The wide tree, or null when this is a binary one.
     [[nodiscard]] const WideBvh* wide() const { return std::get_if<WideBvh>(&tree_); }
 
+    [[nodiscard]] bool is_empty() const {
+        return wide() ? wide()->is_empty() : binary()->tree.is_empty();
+    }
+
     /// Bytes of the nodes, and of the triangles.
     [[nodiscard]] std::size_t size_in_bytes() const;
 

@@ -18,9 +18,9 @@ namespace raywise {
 namespace {
 
 TEST(BoxFrame, RefusesDirectionsThatAreNone) {
-    EXPECT_THROW(static_cast<void>(frame_along({0, 0, 0})), Error);
+    EXPECT_THROW(static_cast<void>(box_frame_along({0, 0, 0})), Error);
     EXPECT_THROW(
-        static_cast<void>(frame_along({0, std::numeric_limits<double>::quiet_NaN(), 1})), Error
+        static_cast<void>(box_frame_along({0, std::numeric_limits<double>::quiet_NaN(), 1})), Error
     );
 }
 
@@ -28,7 +28,7 @@ TEST(BoxFrame, DefaultIsTheWorld) {
     const BoxFrame world;
     EXPECT_TRUE(world.is_world());
     EXPECT_EQ(world.to_frame({1, 2, 3}), (Vec3{1, 2, 3}));
-    EXPECT_TRUE(frame_along({0, -2, 0}).is_world()) << "along an axis nothing is sheared";
+    EXPECT_TRUE(box_frame_along({0, -2, 0}).is_world()) << "along an axis nothing is sheared";
 }
 
 TEST(BoxFrame, PointsAlongTheDirectionShareAllButOneCoordinate) {
@@ -36,7 +36,7 @@ TEST(BoxFrame, PointsAlongTheDirectionShareAllButOneCoordinate) {
         Rng rng(41, i);
         const auto number = [&] { return 2 * rng.uniform() - 1; };
         const Vec3d direction = to_double(Vec3{number(), number(), number()});
-        const BoxFrame frame = frame_along(direction);
+        const BoxFrame frame = box_frame_along(direction);
         EXPECT_EQ(frame.slopes[frame.axis], 0);
         const Vec3 from{number(), number(), number()};
         const Vec3 to = to_float(to_double(from) + direction * 5.0);
@@ -62,7 +62,7 @@ TEST(BoxFrame, MeshIsTheSameForAnyNumberOfThreads) {
         corners.push_back({i, i / 2, i / 3});
     }
     const TriangleView view(vertices, corners);
-    const BoxFrame frame = frame_along({0.3, -1, 0.4});
+    const BoxFrame frame = box_frame_along({0.3, -1, 0.4});
     const FramedMesh serial = to_frame(view, frame);
     const FramedMesh parallel = to_frame(view, frame, Executor(3));
     EXPECT_EQ(serial.vertices, parallel.vertices);

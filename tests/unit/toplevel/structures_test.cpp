@@ -67,6 +67,10 @@ TEST(Structures, EveryKindAnswersLikeOnePlainTree) {
         for (const InfluenceArea& area : areas) {
             if (rng.below(2) == 0) params.uses[area.name].structure = StructureKind::wide_tree;
             if (rng.below(4) == 0) params.uses[area.name].expected_rays = 0;
+            const bool is_parallel =
+                std::holds_alternative<ParallelDistribution>(area.distribution);
+            if (is_parallel && rng.below(3) == 0)
+                params.uses[area.name].structure = StructureKind::framed_tree;
         }
         const Accelerator accelerator = build_accelerator(scene, areas, params);
         const BinaryTree plain = plain_tree(scene);
@@ -173,6 +177,26 @@ TEST(Structures, ChoiceFollowsTheExpectedRays) {
     const std::string text = build_accelerator(scene, {sun}, many)["sun"].explain();
     EXPECT_NE(text.find("pencil_grid, cheapest for 1e+09 rays"), std::string::npos) << text;
     EXPECT_NE(text.find("pays from"), std::string::npos) << text;
+}
+
+TEST(Structures, BlurredSunGetsAFrameOnlyWhereCountingSaysSo) {
+    const Scene forest = generate_forest({.triangles = 20'000});
+    const InfluenceArea sun = InfluenceArea::parallel(
+        "sun",
+        {.direction = {0.5, -0.7, 0.5},
+         .region = obb_around(bounds(forest)),
+         .cone_half_angle_deg = 0.27}
+    );
+    const Accelerator few = build_accelerator(forest, {sun}, {.use = {.expected_rays = 1e3}});
+    EXPECT_EQ(few["sun"].choice().kind, StructureKind::none);
+    EXPECT_EQ(few["sun"].choice().predictions.size(), 1U); // not even tried
+    const Accelerator many = build_accelerator(forest, {sun}, {.use = {.expected_rays = 1e10}});
+    const StructureChoice& choice = many["sun"].choice();
+    ASSERT_EQ(choice.predictions.size(), 2U);
+    EXPECT_EQ(choice.kind, cheapest(choice.predictions, 1e10).kind);
+    EXPECT_EQ(
+        many.local(AreaId{0}).has_tree, choice.predictions[1].ray_ns < choice.predictions[0].ray_ns
+    );
 }
 
 TEST(Structures, UnknownRaysOfAPencilFindItsGrid) {

@@ -178,7 +178,7 @@ TEST_P(Wide, FramedTreesAgreeWithBruteForce) {
         const Soup soup = random_soup(rng, 64, how);
         const auto slope = [&] { return 2 * static_cast<double>(rng.uniform()) - 1; };
         const Vec3d direction{slope(), slope(), slope()};
-        const WideBvh tree = framed_tree(soup.view(), frame_along(direction), 1 + i % 4);
+        const WideBvh tree = framed_tree(soup.view(), box_frame_along(direction), 1 + i % 4);
         for (int k = 0; k < 30; ++k) {
             Ray ray = random_ray(rng, soup, how);
             if (k % 3 != 0) {
