@@ -28,6 +28,7 @@ struct BenchOptions {
     SceneOptions common;
     std::string classes;
     std::string chart;
+    std::string structure;
     bool quick = false;
     bool scaling = false;
     std::size_t largest = 0;
@@ -69,11 +70,33 @@ std::vector<RayClass> parse_classes(const std::string& text) {
     return classes;
 }
 
+/// Nothing for "auto". Throws UsageError for a name that there is not.
+std::optional<StructureKind> parse_structure(const std::string& text) {
+    if (text.empty() || text == "auto") return std::nullopt;
+    std::vector<std::string> names = {"auto"};
+    for (const StructureKind kind :
+         {StructureKind::none,
+          StructureKind::binary_tree,
+          StructureKind::wide_tree,
+          StructureKind::pencil_grid,
+          StructureKind::inversion}) {
+        if (text == name_of(kind)) return kind;
+        names.emplace_back(name_of(kind));
+    }
+    throw UsageError(fmt::format(
+        "--structure: unknown structure '{}'{} (there are {})",
+        text,
+        did_you_mean(text, names),
+        fmt::join(names, ", ")
+    ));
+}
+
 BenchParams params_of(const BenchOptions& options, const Session& session) {
     BenchParams params;
     params.classes = options.scaling && options.classes.empty()
                          ? std::vector{RayClass::primary, RayClass::sun, RayClass::diffuse_bounce}
                          : parse_classes(options.classes);
+    params.structure = parse_structure(options.structure);
     params.workload.seed = static_cast<std::uint64_t>(session.options.seed);
     params.workload.paths = options.quick ? std::size_t{1} << 16U : std::size_t{1} << 18U;
     params.workload.emitters = options.quick ? 2 : 4;
@@ -223,6 +246,12 @@ Command add_bench(CLI::App& root, CommonOptions& options) {
         own->classes,
         "Ray classes, such as primary,sun; without it all: " +
             fmt::format("{}", fmt::join(class_names(), ", "))
+    );
+    app->add_option(
+        "--structure",
+        own->structure,
+        "Force what areas are traced through: auto, none, binary_tree, wide_tree, pencil_grid or "
+        "inversion (the last two: exact areas only)"
     );
     app->add_option(
         "--chart", own->chart, "Write a chart (.svg): one bar per scene and class of rays"

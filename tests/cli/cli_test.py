@@ -452,6 +452,15 @@ class Bench(CliTest):
         self.assertEqual(hashes("--threads", "1"), hashes("--threads", "2"))
         self.assertNotEqual(hashes(), hashes("--seed", "2"))
 
+    def test_a_structure_can_be_forced(self):
+        for structure in ("none", "wide_tree", "pencil_grid", "inversion"):
+            rows, _ = self.rows("spheres:500", "--classes", "sun,area_light", "--structure", structure)
+            for row in rows:
+                self.assertEqual(row["mismatches"], 0, row)
+                if row["kind"] == "exact":
+                    self.assertEqual(row["structure"], structure)
+        self.assertIn("did you mean 'wide_tree'?", self.fail(USAGE, "bench", "random:300", "--structure", "widetree"))
+
     def test_folders_files_and_recipes_are_scenes(self):
         self.write("b.ply", TETRAHEDRON)
         self.write("a.ply", TETRAHEDRON)

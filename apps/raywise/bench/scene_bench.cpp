@@ -149,12 +149,25 @@ private:
         return peer;
     }
 
+    static bool may_have(const InfluenceArea& area, StructureKind structure) {
+        const bool is_for_exact_areas =
+            structure == StructureKind::pencil_grid || structure == StructureKind::inversion;
+        return !is_for_exact_areas || pencil_of(area).has_value();
+    }
+
     Accelerator build(const std::string& name, std::vector<InfluenceArea> areas) {
         step("building " + name);
+        AcceleratorParams params;
+        params.use.expected_rays = 1e9; // what is traced is compared, not what is built
+        for (const InfluenceArea& area : areas) {
+            AreaUse& use = params.uses[area.name];
+            use = params.use;
+            if (params_.structure && may_have(area, *params_.structure))
+                use.structure = params_.structure;
+        }
         const Stopwatch watch;
-        Accelerator accelerator = build_accelerator(
-            scene_, std::move(areas), {.use = {.expected_rays = 1e9}}, machine_.build, progress_
-        );
+        Accelerator accelerator =
+            build_accelerator(scene_, std::move(areas), params, machine_.build, progress_);
         add_build(name, watch.milliseconds(), accelerator.measure_memory().total());
         return accelerator;
     }

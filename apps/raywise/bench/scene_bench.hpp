@@ -7,7 +7,9 @@
 #include <raywise/analysis/ray_workload.hpp>
 #include <raywise/core/progress.hpp>
 #include <raywise/scene/scene.hpp>
+#include <raywise/toplevel/structure_choice.hpp>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +19,8 @@ struct BenchParams {
     WorkloadParams workload;
     std::vector<RayClass> classes;
     Effort effort;
+    /// Of every area that may have it; absent: the accelerator chooses.
+    std::optional<StructureKind> structure = {};
 };
 
 /// Throws Error where the parts do, Cancelled when stopped.
