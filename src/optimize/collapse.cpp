@@ -7,7 +7,9 @@
 #include <raywise/core/ids.hpp>
 #include <raywise/core/large_buffer.hpp>
 #include <raywise/geometry/aabb.hpp>
+#include <raywise/geometry/triangle.hpp>
 #include <raywise/geometry/triangle_view.hpp>
+#include <raywise/optimize/child_order.hpp>
 
 #include <algorithm>
 #include <array>
@@ -15,6 +17,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace raywise {
@@ -42,19 +45,37 @@ struct Plan {
 /// Plans from the leaves up, as [Ylitie17] does.
 class Planner {
 public:
-    Planner(const Bvh& tree, const NodeWeights& nodes, const CollapseParams& params)
-        : tree_(tree)
-        , weights_(nodes.mass)
-        , promises_(nodes.promise)
-        , params_(params)
-        , plans_(tree.nodes.size()) {
-        for (std::size_t i = tree.nodes.size(); i-- > 0;)
-            plan(i);
+    Planner(
+        const Bvh& tree,
+        const NodeWeights& weights,
+        const CollapseParams& params,
+        const Executor& executor
+    )
+        : tree_(tree), weights_(weights), params_(params), plans_(tree.nodes.size()) {
+        if (tree.is_empty()) return;
+        // Subtrees first, side by side, then what is above them.
+        constexpr std::size_t many = 64;
+        std::vector<NodeId> above;
+        std::vector<NodeId> tops{NodeId{0}};
+        for (std::size_t i = 0; i < tops.size() && tops.size() - i < many; ++i) {
+            above.push_back(tops[i]);
+            if (tree[tops[i]].is_leaf()) continue;
+            const NodeId left = tree[tops[i]].left();
+            const NodeId right = tree[tops[i]].right();
+            tops.push_back(left);
+            tops.push_back(right);
+        }
+        const std::size_t first = above.size();
+        executor.for_each_chunk(tops.size() - first, 1, [&](std::size_t begin, std::size_t) {
+            plan_all(tops[first + begin]);
+        });
+        for (std::size_t i = first; i-- > 0;)
+            plan(to_index(above[i]));
     }
 
     [[nodiscard]] const Plan& operator[](NodeId id) const { return plans_[to_index(id)]; }
 
-    [[nodiscard]] float weight(NodeId id) const { return weights_[to_index(id)]; }
+    [[nodiscard]] float weight(NodeId id) const { return weights_.mass[to_index(id)]; }
 
     /// The slots that a wide node made of `id` has, by rising promise; equal ones left to right.
     struct Slots {
@@ -71,15 +92,40 @@ public:
         const auto end = slots.ids.begin() + static_cast<std::ptrdiff_t>(slots.count);
         // By insertion: stable, and eight slots at most.
         for (auto next = slots.ids.begin(); next != end; ++next) {
-            const auto is_less = [&](NodeId a, NodeId b) {
-                return promises_[to_index(a)] < promises_[to_index(b)];
-            };
+            const auto is_less = [&](NodeId a, NodeId b) { return promise(a) < promise(b); };
             std::rotate(std::upper_bound(slots.ids.begin(), next, *next, is_less), next, next + 1);
         }
         return slots;
     }
 
 private:
+    /// Hits found per cost, for any-hit rays that meet the box.
+    [[nodiscard]] double promise(NodeId id) const {
+        const NodeOutlook& outlook = weights_.outlook[to_index(id)];
+        return outlook.opacity / outlook.cost;
+    }
+
+    void plan_all(NodeId id) { // NOLINT(misc-no-recursion): as deep as the tree, at most 64
+        const Node& node = tree_[id];
+        if (!node.is_leaf()) {
+            plan_all(node.left());
+            plan_all(node.right());
+        }
+        plan(to_index(id));
+    }
+
+    void look_out(std::size_t at, const Node& node) {
+        const std::size_t left = to_index(node.left());
+        const std::size_t right = to_index(node.right());
+        weights_.outlook[at] = outlook_in_order(
+            weights_.outlook[left],
+            share_of(weights_.mass[left], weights_.mass[at]),
+            weights_.outlook[right],
+            share_of(weights_.mass[right], weights_.mass[at]),
+            {}
+        );
+    }
+
     /// The least cost of sharing k slots among the children; at how many for the left one.
     struct Share {
         float cost = std::numeric_limits<float>::infinity();
@@ -106,10 +152,11 @@ private:
             plan.cost.fill(leaf_cost(at, plan.prims));
             return;
         }
+        look_out(at, node);
         plan.prims = plans_[to_index(node.left())].prims + plans_[to_index(node.right())].prims;
         for (std::size_t k = 2; k <= width; ++k)
             plan.cost[k - 1] = best_share(node, k).cost;
-        const float as_node = weights_[at] + plan.cost[width - 1];
+        const float as_node = weights_.mass[at] + plan.cost[width - 1];
         const float as_leaf = plan.prims <= params_.max_leaf_size
                                   ? leaf_cost(at, plan.prims)
                                   : std::numeric_limits<float>::infinity();
@@ -122,7 +169,8 @@ private:
     [[nodiscard]] float leaf_cost(std::size_t at, std::uint32_t prims) const {
         constexpr auto lanes = static_cast<std::uint32_t>(TriangleBlock::width);
         const std::uint32_t blocks = (prims + lanes - 1) / lanes;
-        return weights_[at] * static_cast<float>(params_.block_cost) * static_cast<float>(blocks);
+        return weights_.mass[at] * static_cast<float>(params_.block_cost) *
+               static_cast<float>(blocks);
     }
 
     /// Puts into `slots` what stands for inner node `id` when it has k >= 2 slots and must use
@@ -145,33 +193,32 @@ private:
     }
 
     const Bvh& tree_;
-    const float* weights_;
-    const float* promises_;
+    const NodeWeights& weights_;
     const CollapseParams& params_;
     LargeBuffer<Plan> plans_;
 };
 
-/// Writes what was planned, depth first.
+/// Writes what was planned, depth first: the nodes in one thread, the triangles in all.
 class Writer {
 public:
     Writer(const Bvh& tree, const TriangleView& triangles, const Planner& plans)
         : tree_(tree), triangles_(triangles), plans_(plans) {}
 
-    [[nodiscard]] WideBvh write() {
+    [[nodiscard]] WideBvh write(const Executor& executor) {
         if (tree_.is_empty()) return {};
         out_.box = tree_.root().box();
         write_node(NodeId{0});
-        for (const TriangleBlock& block : out_.blocks)
-            for (std::size_t lane = 0; lane < TriangleBlock::width; ++lane) {
-                if (block.prims[lane] == no_prim) continue;
-                out_.vertex_bounds = unite(out_.vertex_bounds, bounds(block.triangle(lane)));
-                out_.largest_doubled_extent =
-                    std::max(out_.largest_doubled_extent, block.doubled_extents[lane]);
-            }
+        fill_blocks(executor);
         return std::move(out_);
     }
 
 private:
+    /// A block before its triangles are fetched.
+    struct Listed {
+        std::array<PrimId, TriangleBlock::width> prims;
+        std::uint32_t is_last;
+    };
+
     std::size_t write_node(NodeId id) {
         const Planner::Slots slots = plans_.slots_of(id);
         const std::size_t at = out_.nodes.size();
@@ -183,30 +230,26 @@ private:
                 continue;
             }
             const NodeId child = slots.ids[i];
-            const WideRef ref = plans_[child].as_leaf ? WideRef::leaf(write_leaf(child))
+            const WideRef ref = plans_[child].as_leaf ? WideRef::leaf(list_leaf(child))
                                                       : WideRef::node(write_node(child));
             out_.nodes[at].set(i, tree_[child].box(), ref);
         }
         return at;
     }
 
-    std::size_t write_leaf(NodeId id) {
+    std::size_t list_leaf(NodeId id) {
         prims_.clear();
         gather(id);
         // A spatial split may have put a triangle into several of the nodes that became one leaf.
         std::sort(prims_.begin(), prims_.end());
         prims_.erase(std::unique(prims_.begin(), prims_.end()), prims_.end());
-        const std::size_t first = out_.blocks.size();
+        const std::size_t first = listed_.size();
         for (std::size_t i = 0; i < prims_.size(); i += TriangleBlock::width) {
-            if (out_.blocks.size() > max_index) throw Error("collapse: too many triangles");
-            TriangleBlock& block = out_.blocks.emplace_back(TriangleBlock{});
+            if (listed_.size() > max_index) throw Error("collapse: too many triangles");
+            Listed& block = listed_.emplace_back();
             block.is_last = i + TriangleBlock::width >= prims_.size() ? 1 : 0;
-            for (std::size_t lane = 0; lane < TriangleBlock::width; ++lane) {
-                if (i + lane < prims_.size())
-                    block.set(lane, triangles_[prims_[i + lane]], prims_[i + lane]);
-                else
-                    block.clear(lane);
-            }
+            for (std::size_t lane = 0; lane < TriangleBlock::width; ++lane)
+                block.prims[lane] = i + lane < prims_.size() ? prims_[i + lane] : no_prim;
         }
         return first;
     }
@@ -222,10 +265,56 @@ private:
             prims_.push_back(prim);
     }
 
+    /// What chunks of blocks have in common with the tree.
+    struct Extent {
+        Aabb box;
+        float largest = 0;
+
+        void add(const Extent& other) {
+            box = unite(box, other.box);
+            largest = std::max(largest, other.largest);
+        }
+    };
+
+    void fill_blocks(const Executor& executor) {
+        constexpr std::size_t chunk = 1024;
+        out_.blocks.resize(listed_.size());
+        std::vector<Extent> extents((listed_.size() + chunk - 1) / chunk);
+        executor.for_each_chunk(listed_.size(), chunk, [&](std::size_t begin, std::size_t end) {
+            Extent& extent = extents[begin / chunk];
+            for (std::size_t i = begin; i < end; ++i)
+                extent.add(fill_block(i));
+        });
+        Extent all;
+        for (const Extent& extent : extents)
+            all.add(extent);
+        out_.vertex_bounds = all.box;
+        out_.largest_doubled_extent = all.largest;
+    }
+
+    [[nodiscard]] Extent fill_block(std::size_t i) {
+        Extent extent;
+        TriangleBlock& block = out_.blocks[i];
+        block.is_last = listed_[i].is_last;
+        block.unused = {};
+        for (std::size_t lane = 0; lane < TriangleBlock::width; ++lane) {
+            const PrimId prim = listed_[i].prims[lane];
+            if (prim == no_prim) {
+                block.clear(lane);
+                continue;
+            }
+            const Triangle triangle = triangles_[prim];
+            block.set(lane, triangle, prim);
+            extent.add({bounds(triangle), block.doubled_extents[lane]});
+        }
+        return extent;
+    }
+
     const Bvh& tree_;
     const TriangleView& triangles_;
     const Planner& plans_;
     WideBvh out_;
+    std::vector<Listed> listed_;
     std::vector<PrimId> prims_;
 };
 
@@ -234,13 +323,13 @@ private:
 WideBvh collapse_weighed(
     const Bvh& tree,
     const TriangleView& triangles,
-    const NodeWeights& nodes,
+    const NodeWeights& weights,
     const CollapseParams& params,
-    const Executor& /*executor*/
+    const Executor& executor
 ) {
     check(params);
-    const Planner plans(tree, nodes, params);
-    return Writer(tree, triangles, plans).write();
+    const Planner plans(tree, weights, params, executor);
+    return Writer(tree, triangles, plans).write(executor);
 }
 
 } // namespace detail
