@@ -10,6 +10,7 @@
 #include <raywise/core/executor.hpp>
 #include <raywise/core/rng.hpp>
 #include <raywise/geometry/hit_measure.hpp>
+#include <raywise/geometry/local_segment_measure.hpp>
 #include <raywise/geometry/sampling.hpp>
 #include <raywise/geometry/segment_measure.hpp>
 #include <raywise/io/load_scene.hpp>
@@ -128,8 +129,10 @@ void add(Scene scene) {
     });
     add("measured", subject, [](const Subject& s, const Executor& executor) {
         const SegmentMeasure measure(s.seen, bounds(s.scene));
-        const Bvh tree = build_spatial(s.scene.view(), measure, {}, executor);
-        return reinsert(tree, measure, {.batch = 0.02, .max_rounds = 3}, executor);
+        const LocalSegmentMeasure local(measure, bounds(s.scene));
+        const Bvh tree = build_spatial(s.scene.view(), local, {}, executor);
+        const Bvh better = reinsert(tree, SurfaceMeasure{}, {}, executor);
+        return reinsert(better, measure, {.batch = 0.02, .max_rounds = 3}, executor);
     });
 }
 

@@ -36,6 +36,9 @@ public:
     /// Number of segments that meet the box.
     [[nodiscard]] std::size_t count(const Aabb& box) const;
 
+    /// Mass of one segment.
+    [[nodiscard]] double weight() const { return per_segment_; }
+
     /// Number of segments that an evaluation tests.
     [[nodiscard]] std::size_t segment_count() const { return segment_count_; }
 

@@ -2,6 +2,7 @@
 #include <raywise/build/spatial.hpp>
 #include <raywise/core/executor.hpp>
 #include <raywise/core/rng.hpp>
+#include <raywise/geometry/local_segment_measure.hpp>
 #include <raywise/geometry/sampling.hpp>
 #include <raywise/geometry/segment_measure.hpp>
 #include <raywise/optimize/reinsertion.hpp>
@@ -97,7 +98,7 @@ TEST(MeasuredTrees, AreNeverMuchDearerOnOtherRaysAndCheaperInTheMean) {
         const Aabb box = bounds(scene);
         const auto build = [&](const auto& measure) {
             const Bvh tree = build_spatial(scene.view(), measure, {}, executor);
-            return reinsert(tree, measure, {.batch = 0.02, .max_rounds = 2}, executor);
+            return reinsert(tree, SurfaceMeasure{}, {}, executor);
         };
         const Bvh surface = build(SurfaceMeasure{});
         const std::vector<Ray> eyes = eye_rays(box);
@@ -109,7 +110,13 @@ TEST(MeasuredTrees, AreNeverMuchDearerOnOtherRaysAndCheaperInTheMean) {
             const std::span<const Ray> all = kind.rays;
             const std::vector<Ray> segments =
                 terminated(surface, IndexedTriangles(scene.view()), all.first(ray_count), executor);
-            const Bvh measured = build(SegmentMeasure(segments, box));
+            const SegmentMeasure counted(segments, box);
+            const Bvh measured = reinsert(
+                build(LocalSegmentMeasure(counted, box)),
+                counted,
+                {.batch = 0.02, .max_rounds = 3},
+                executor
+            );
             const double ratio = mean_cost(measured, scene, all.last(ray_count)) /
                                  mean_cost(surface, scene, all.last(ray_count));
             EXPECT_LT(ratio, 1.02);
