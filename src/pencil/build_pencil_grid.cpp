@@ -206,7 +206,7 @@ void assemble(
             const std::size_t end = std::min(built.cells.size(), (i + 1) * built.part_cells);
             for (std::size_t k = i * built.part_cells; k < end; ++k) {
                 Cell cell = built.cells[k];
-                if (cell.near != Cell::never) cell.link += words;
+                if (!cell.is_empty()) cell.link += words;
                 std::memcpy(&cells[k], &cell, sizeof cell);
             }
         });

@@ -44,6 +44,7 @@ Cell CellBuilder::build(std::span<const std::uint32_t> pieces, const Window& win
         }
         references.push_back(
             {place,
+             plane_of(piece, place, window),
              std::max(depth_units(map_, least) - 1, 0),
              depth_units(map_, greatest) + 1,
              index,
@@ -58,10 +59,7 @@ Cell CellBuilder::build(std::span<const std::uint32_t> pieces, const Window& win
     }
     const std::int32_t cover = cull(references);
     if (cover != never) cell.cover = static_cast<std::uint16_t>(cover);
-    std::int32_t near = never;
-    for (const Reference& reference : references)
-        near = std::min(near, reference.least);
-    cell.near = static_cast<std::uint16_t>(near >> 8);
+    set_near(cell, references, window);
     if (references.size() > params_.leaf_size && shift > place_bits &&
         split(references, window, shift, cell))
         return cell;
@@ -231,6 +229,110 @@ void CellBuilder::add_list(
 
 /// The plane of a parallel piece; of a radial one, whose depth -1 / key is a convex function of the
 /// place, the tangent in the middle of its bounds, which is nowhere beyond.
+CellBuilder::Plane
+CellBuilder::plane_of(const Piece& piece, const Footprint& bounds, const Window& window) const {
+    const auto plane = key_plane(piece);
+    if (!plane) return {};
+    const double middle_u = 0.5 * (bounds.least_u + bounds.greatest_u + 1);
+    const double middle_v = 0.5 * (bounds.least_v + bounds.greatest_v + 1);
+    double middle = plane->at(middle_u, middle_v);
+    double scale = map_.depth_scale;
+    double error = 2;
+    if (is_radial_) {
+        if (!(middle < 0)) return {};
+        const double z = -1 / middle;
+        error += z * 0x1p-19 * scale;
+        scale *= z * z;
+        middle = z;
+    }
+    const double side = window.side;
+    Plane tangent{
+        depth_units_of(map_, middle) - error,
+        plane->slope_u * scale * side,
+        plane->slope_v * scale * side,
+        true
+    };
+    tangent.middle -= (std::abs(tangent.slope_u) + std::abs(tangent.slope_v)) * 0x1p-20;
+    tangent.is_known = std::abs(tangent.middle) < 0x1p29;
+    return tangent;
+}
+
+namespace {
+
+/// Where queries may be that meet a reference, in shares of the cell. A query's place is rounded
+/// down to 2^-15 and to units, and off by the margin and by what the piece was snapped.
+struct Span {
+    double at_u, at_v;
+    double half_u, half_v;
+    double off;
+
+    Span(const Footprint& bounds, const Window& window, std::int32_t margin)
+        : at_u((0.5 * (bounds.least_u + bounds.greatest_u + 1) - window.first_u) / window.side)
+        , at_v((0.5 * (bounds.least_v + bounds.greatest_v + 1) - window.first_v) / window.side)
+        , half_u(0.5 * (bounds.greatest_u + 1 - bounds.least_u) / window.side)
+        , half_v(0.5 * (bounds.greatest_v + 1 - bounds.least_v) / window.side)
+        , off(0x1p-15 + (margin + 3.0) / window.side) {
+        half_u += off;
+        half_v += off;
+    }
+};
+
+} // namespace
+
+/// The plane that all references are behind: with the slopes of the one that takes most of the
+/// cell, or level, whichever is farther in the middle.
+void CellBuilder::set_near(
+    Cell& cell,
+    const std::vector<Reference>& references,
+    const Window& window
+) const {
+    const Reference* widest = nullptr;
+    double widest_area = 0;
+    cell.base = never;
+    for (const Reference& reference : references) {
+        cell.base = std::min(cell.base, reference.least);
+        const Footprint& place = reference.place;
+        const double area = static_cast<double>(place.greatest_u + 1 - place.least_u) *
+                            static_cast<double>(place.greatest_v + 1 - place.least_v);
+        if (reference.plane.is_known && area > widest_area) {
+            widest = &reference;
+            widest_area = area;
+        }
+    }
+    if (widest == nullptr) return;
+    const double steepest =
+        std::max(std::abs(widest->plane.slope_u), std::abs(widest->plane.slope_v));
+    int shift = 0;
+    while (std::ldexp(16000.0, shift) < steepest)
+        if (++shift > 12) return;
+    const double unit = std::ldexp(1.0, shift);
+    const double whole_u = std::nearbyint(widest->plane.slope_u / unit);
+    const double whole_v = std::nearbyint(widest->plane.slope_v / unit);
+    const double slope_u = whole_u * unit;
+    const double slope_v = whole_v * unit;
+    double base = std::numeric_limits<double>::infinity();
+    for (const Reference& reference : references) {
+        const Span span(reference.place, window, pieces_[reference.piece].margin);
+        const double start = slope_u * span.at_u + slope_v * span.at_v;
+        const double level = reference.least - start - std::abs(slope_u) * span.half_u -
+                             std::abs(slope_v) * span.half_v;
+        double lowest = level;
+        if (const Plane& plane = reference.plane; plane.is_known)
+            lowest = std::max(
+                lowest,
+                plane.middle - start - std::abs(plane.slope_u - slope_u) * span.half_u -
+                    std::abs(plane.slope_v - slope_v) * span.half_v
+            );
+        base = std::min(base, lowest - (std::abs(slope_u) + std::abs(slope_v)) * span.off);
+    }
+    base = std::floor(base) - 2;
+    if (!(base + 0.5 * (slope_u + slope_v) > cell.base) || !(std::abs(base) < 0x1p29)) return;
+    cell.base = static_cast<std::int32_t>(base);
+    cell.slope_u = static_cast<std::int16_t>(whole_u);
+    cell.slope_v = static_cast<std::int16_t>(whole_v);
+    cell.shift = static_cast<std::uint16_t>(shift);
+}
+
 CellBuilder::LinearDepth CellBuilder::linear_depth(
     const Reference& reference,
     const Window& window,
@@ -239,54 +341,29 @@ CellBuilder::LinearDepth CellBuilder::linear_depth(
 ) const {
     const auto flat = static_cast<std::int16_t>((reference.least - base) >> depth_shift);
     const LinearDepth constant{0, 0, static_cast<std::uint16_t>(flat)};
-    const Piece& piece = pieces_[reference.piece];
     // The plane of one snapped part says nothing sure of the others.
-    if (reference.is_merged) return constant;
-    const auto plane = key_plane(piece);
-    if (!plane) return constant;
-    const Footprint& bounds = reference.place;
-    const double middle_u = 0.5 * (bounds.least_u + bounds.greatest_u + 1);
-    const double middle_v = 0.5 * (bounds.least_v + bounds.greatest_v + 1);
-    double middle = plane->at(middle_u, middle_v);
-    double scale = map_.depth_scale;
-    double error = 2;
-    if (is_radial_) {
-        if (!(middle < 0)) return constant;
-        const double z = -1 / middle;
-        error += z * 0x1p-19 * scale;
-        scale *= z * z;
-        middle = z;
-    }
+    if (!reference.plane.is_known || reference.is_merged) return constant;
     const double unit = static_cast<double>(std::int64_t{1} << depth_shift);
-    const double side = window.side;
-    // The list's depths over the cell.
-    const double slope_u = plane->slope_u * scale * side / unit;
-    const double slope_v = plane->slope_v * scale * side / unit;
+    const double slope_u = reference.plane.slope_u / unit;
+    const double slope_v = reference.plane.slope_v / unit;
     const double whole_u = std::nearbyint(slope_u);
     const double whole_v = std::nearbyint(slope_v);
     if (!(std::abs(whole_u) < 32000 && std::abs(whole_v) < 32000)) return constant;
-    const double at_u = (middle_u - window.first_u) / side;
-    const double at_v = (middle_v - window.first_v) / side;
-    // A query's place is rounded down to 2^-15 and to units, and off by the margin and by what the
-    // piece was snapped.
-    const double off = 0x1p-15 + (piece.margin + 3) / side;
-    const double half_u = 0.5 * (bounds.greatest_u + 1 - bounds.least_u) / side + off;
-    const double half_v = 0.5 * (bounds.greatest_v + 1 - bounds.least_v) / side + off;
-    const double depth = (depth_units_of(map_, middle) - base - error) / unit;
+    const Span span(reference.place, window, pieces_[reference.piece].margin);
     // Products are rounded, to half a depth each, and so is the start.
     constexpr double rounding = 2;
-    const double slack =
-        (std::abs(whole_u) + std::abs(whole_v)) * off + std::abs(slope_u - whole_u) * half_u +
-        std::abs(slope_v - whole_v) * half_v +
-        (std::abs(slope_u) * half_u + std::abs(slope_v) * half_v) * 0x1p-20 + rounding;
-    const double at_middle = depth - slack;
+    const double slack = (std::abs(whole_u) + std::abs(whole_v)) * span.off +
+                         std::abs(slope_u - whole_u) * span.half_u +
+                         std::abs(slope_v - whole_v) * span.half_v + rounding;
+    const double at_middle = (reference.plane.middle - base) / unit - slack;
     // A plane that leaves the numbers, or says less than the least depth, is of no use.
     if (!(at_middle > flat)) return constant;
     const double lowest =
-        at_middle - std::abs(whole_u) * half_u - std::abs(whole_v) * half_v - rounding;
+        at_middle - std::abs(whole_u) * span.half_u - std::abs(whole_v) * span.half_v - rounding;
     if (!(lowest > -32000 && at_middle < 32000)) return constant;
     const auto start =
-        static_cast<std::int32_t>(std::floor(at_middle - whole_u * at_u - whole_v * at_v));
+        static_cast<std::int32_t>(std::floor(at_middle - whole_u * span.at_u - whole_v * span.at_v)
+        );
     return {
         static_cast<std::int16_t>(whole_u),
         static_cast<std::int16_t>(whole_v),
@@ -309,7 +386,7 @@ void CellBuilder::write(std::byte* to, std::uint32_t words) const {
             Cell child;
             std::byte* place = to + at + i * sizeof(Cell);
             std::memcpy(&child, place, sizeof child);
-            if (child.near != Cell::never) child.link += words;
+            if (!child.is_empty()) child.link += words;
             std::memcpy(place, &child, sizeof child);
         }
 }

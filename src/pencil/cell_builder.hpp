@@ -40,8 +40,17 @@ public:
     [[nodiscard]] const PencilGridStatistics& statistics() const { return statistics_; }
 
 private:
+    /// A plane that is nowhere behind the reference's piece, in units.
+    struct Plane {
+        double middle = 0;  ///< depth at the middle of the bounds
+        double slope_u = 0; ///< over the cell
+        double slope_v = 0;
+        bool is_known = false;
+    };
+
     struct Reference {
         Footprint place;
+        Plane plane;
         std::int32_t least;    ///< depth, in units
         std::int32_t greatest; ///< depth, in units
         std::uint32_t piece;
@@ -56,6 +65,9 @@ private:
     };
 
     Cell build(std::span<const std::uint32_t> pieces, const Window& window, int shift);
+    [[nodiscard]] Plane
+    plane_of(const Piece& piece, const Footprint& bounds, const Window& window) const;
+    void set_near(Cell& cell, const std::vector<Reference>& references, const Window& window) const;
     [[nodiscard]] LinearDepth linear_depth(
         const Reference& reference,
         const Window& window,

@@ -22,22 +22,30 @@ inline constexpr std::size_t children = 16;
 inline constexpr std::int32_t most_cells_a_side = 4096;
 
 /// Depths, in units: [0, deepest]. Geometry has [shallowest, deepest], so that what lies before it
-/// is below, and `cover` and `near` of 16 bits can say "never".
+/// is below, and a `cover` of 16 bits can say "never".
 inline constexpr std::int32_t shallowest = 256;
 inline constexpr std::int32_t deepest = (1 << 24) - 257;
 
-/// A cell of the top grid, or one of 16 siblings. Depths in 256 units. A query that ends before
-/// `near` meets nothing; one that comes from the emitter and ends beyond `cover` meets at least two
-/// triangles. The lists are complete up to `cover`, itself included.
+/// A cell of the top grid, or one of 16 siblings. All it holds lies at or behind a plane: at the
+/// place (u, v), in 2^-15 of the cell, base + ((slope_u * u + slope_v * v) >> 15) * 2^shift, in
+/// units. A query that ends before meets nothing. One that comes from the emitter and ends beyond
+/// `cover`, in 256 units, meets at least two triangles. The lists are complete up to `cover`,
+/// itself included.
 struct Cell {
     std::uint32_t link = 0; ///< where its list or children are, in 16 bytes; with `split_mark`
-    std::uint16_t near = never;
+    std::int32_t base = nothing;
+    std::int16_t slope_u = 0; ///< at most 2^14 in magnitude
+    std::int16_t slope_v = 0;
     std::uint16_t cover = never;
+    std::uint16_t shift = 0;
 
+    static constexpr std::int32_t nothing = 1 << 30; ///< base of a cell without triangles
     static constexpr std::uint16_t never = 0xFFFF;
     static constexpr std::uint32_t split_mark = 0x80000000U;
+
+    [[nodiscard]] bool is_empty() const { return base == nothing; }
 };
-static_assert(sizeof(Cell) == 8);
+static_assert(sizeof(Cell) == 16);
 
 /// The head of a list; chunks of 32 references follow, the last one shorter, a multiple of 4.
 /// Before every chunk but the first stand its least depth and two bytes of nothing. A chunk of n

@@ -199,6 +199,13 @@ struct Leaf {
     Verdict verdict;
 };
 
+/// Where in its cell of side 2^shift a place is, in 2^-15.
+HWY_INLINE std::int16_t fine_place(std::int32_t units, int shift) {
+    return static_cast<std::int16_t>(
+        ((static_cast<std::uint32_t>(units) << (top_shift - shift)) & 0xFFFFU) >> 1U
+    );
+}
+
 HWY_INLINE const Cell* top_cell(const Spot& spot) {
     const Face& face = *spot.face;
     return face.cells + static_cast<std::ptrdiff_t>(spot.v >> top_shift) * face.width +
@@ -209,15 +216,16 @@ HWY_INLINE const Cell* top_cell(const Spot& spot) {
 template <class Count>
 HWY_INLINE Leaf find_leaf(const Grid& grid, const Spot& spot, bool decides_hits, Count count) {
     const Cell* cell = top_cell(spot);
-    const std::int32_t deepest_256 = spot.deepest >> 8;
     const std::int32_t sure_256 = decides_hits ? spot.sure >> 8 : -1;
     int shift = top_shift;
     for (;;) {
         count.cell();
         const Cell here = *cell;
-        const bool is_miss = deepest_256 < here.near;
+        const std::int32_t plane =
+            here.slope_u * fine_place(spot.u, shift) + here.slope_v * fine_place(spot.v, shift);
+        const bool is_miss = spot.deepest < here.base + (plane >> 15) * (1 << here.shift);
         const bool is_hit = sure_256 > here.cover;
-        if (is_miss | is_hit) return {here, shift, true, is_hit ? Verdict::hit : Verdict::miss};
+        if (is_miss | is_hit) return {here, shift, true, is_miss ? Verdict::miss : Verdict::hit};
         if ((here.link & Cell::split_mark) == 0) return {here, shift, false, Verdict::miss};
         shift -= split_bits;
         const auto child =
@@ -360,12 +368,7 @@ HWY_INLINE Walk walk(const Grid& grid, const Leaf& leaf, const Spot& spot) {
     const std::byte* const at = grid.lists + std::size_t{leaf.cell.link} * 16;
     ListHead head;
     std::memcpy(&head, at, sizeof head);
-    const auto fine = [&](std::int32_t value) {
-        return static_cast<std::int16_t>(
-            ((static_cast<std::uint32_t>(value) << (top_shift - leaf.shift)) & 0xFFFFU) >> 1U
-        );
-    };
-    Probe probe{0, 0, fine(spot.u), fine(spot.v), 0};
+    Probe probe{0, 0, fine_place(spot.u, leaf.shift), fine_place(spot.v, leaf.shift), 0};
     probe.u = static_cast<std::int8_t>((probe.u_fine >> 7) - 128);
     probe.v = static_cast<std::int8_t>((probe.v_fine >> 7) - 128);
     return {at + sizeof head, head.count(), head.base, head.shift(), probe};
