@@ -78,6 +78,7 @@ std::optional<StructureKind> parse_structure(const std::string& text) {
          {StructureKind::none,
           StructureKind::binary_tree,
           StructureKind::wide_tree,
+          StructureKind::framed_tree,
           StructureKind::pencil_grid,
           StructureKind::inversion}) {
         if (text == name_of(kind)) return kind;
@@ -250,8 +251,8 @@ Command add_bench(CLI::App& root, CommonOptions& options) {
     app->add_option(
         "--structure",
         own->structure,
-        "Force what areas are traced through: auto, none, binary_tree, wide_tree, pencil_grid or "
-        "inversion (the last two: exact areas only)"
+        "Force what areas are traced through where they may: auto, none, binary_tree, wide_tree, "
+        "framed_tree (parallel areas), pencil_grid or inversion (exact areas)"
     );
     app->add_option(
         "--chart", own->chart, "Write a chart (.svg): one bar per scene and class of rays"

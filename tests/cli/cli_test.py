@@ -453,7 +453,7 @@ class Bench(CliTest):
         self.assertNotEqual(hashes(), hashes("--seed", "2"))
 
     def test_a_structure_can_be_forced(self):
-        for structure in ("none", "wide_tree", "pencil_grid", "inversion"):
+        for structure in ("none", "wide_tree", "framed_tree", "pencil_grid", "inversion"):
             rows, _ = self.rows("spheres:500", "--classes", "sun,area_light", "--structure", structure)
             for row in rows:
                 self.assertEqual(row["mismatches"], 0, row)

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <span>
 #include <utility>
+#include <variant>
 
 namespace raywise::app {
 
@@ -152,6 +153,8 @@ private:
     static bool may_have(const InfluenceArea& area, StructureKind structure) {
         const bool is_for_exact_areas =
             structure == StructureKind::pencil_grid || structure == StructureKind::inversion;
+        if (structure == StructureKind::framed_tree)
+            return std::holds_alternative<ParallelDistribution>(area.distribution);
         return !is_for_exact_areas || pencil_of(area).has_value();
     }
 
