@@ -289,10 +289,11 @@ private:
         }
     }
 
-    /// Predicted for a ray of the area, as a shadow ray, in a tree over everything.
+    /// Predicted for a shadow ray of the area in a tree over everything.
     [[nodiscard]] double ray_ns(const TracedTree& tree, const InfluenceArea& area) const {
+        if (triangles_.size() == 0) return 0;
         CountedQuery counted;
-        const std::vector<Ray> rays = sampled_rays(area, sampled, 1);
+        const std::vector<Ray> rays = sampled_shadow_rays(area, triangles_, sampled, 1);
         for (const Ray& ray : rays)
             static_cast<void>(tree.any_hit(ray, counted));
         return predicted_ns(counted) / static_cast<double>(rays.size());

@@ -13,8 +13,8 @@ namespace raywise::detail {
 /// Of tracing a wide tree: a node visit waits for its cache lines and for a guessed branch, which
 /// takes longer than its arithmetic.
 [[nodiscard]] inline double predicted_ns(const Counts& counts) {
-    constexpr double visit_ns = 15;
-    constexpr double test_ns = 4;
+    constexpr double visit_ns = 20;
+    constexpr double test_ns = 5;
     return visit_ns * static_cast<double>(counts.node_visits()) +
            test_ns * static_cast<double>(counts.prims);
 }
@@ -22,7 +22,7 @@ namespace raywise::detail {
 /// A pencil grid over so many triangles.
 [[nodiscard]] inline StructurePrediction predict_grid(double triangles, const Executor& executor) {
     constexpr double build_ns = 250; // per triangle, serial
-    constexpr double ray_ns = 50;
+    constexpr double ray_ns = 60;
     return {StructureKind::pencil_grid, build_ns * triangles / executor.threads(), ray_ns};
 }
 
