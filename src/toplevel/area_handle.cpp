@@ -78,11 +78,21 @@ std::string AreaHandle::explain() const {
 }
 
 std::optional<Hit> AreaHandle::closest_hit(const Ray& ray) const {
+    if (is_gridded(ray)) {
+        Hit hit;
+        const Verdict verdict = grid_->closest_hit(ray, hit);
+        if (verdict == Verdict::hit) return hit;
+        if (verdict == Verdict::miss) return std::nullopt;
+    }
     SilentQuery nobody;
     return closest_hit(ray, nobody);
 }
 
 bool AreaHandle::any_hit(const Ray& ray) const {
+    if (is_gridded(ray)) {
+        const Verdict verdict = grid_->any_hit(ray);
+        if (verdict != Verdict::unknown) return verdict == Verdict::hit;
+    }
     SilentQuery nobody;
     return any_hit(ray, nobody);
 }

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <raywise/core/executor.hpp>
+#include <raywise/pencil/inversion.hpp>
+#include <raywise/pencil/pencil.hpp>
 #include <raywise/toplevel/structure_choice.hpp>
 #include <raywise/trace/observer.hpp>
 
@@ -36,10 +38,11 @@ predict_framed(std::size_t triangles, const Executor& executor) {
 
 /// One batch of all rays, drawn over: nothing is built, but every triangle is looked at.
 [[nodiscard]] inline StructurePrediction
-predict_inversion(double triangles, const Executor& executor) {
-    constexpr double triangle_ns = 120;
-    constexpr double ray_ns = 80;
-    return {StructureKind::inversion, triangle_ns * triangles / executor.threads(), ray_ns};
+predict_inversion(Pencil::Kind kind, std::size_t triangles, const Executor& executor) {
+    constexpr std::size_t many = 1'000'000;
+    const double build_ns = predicted_inversion_ns(kind, triangles, 0);
+    const double ray_ns = (predicted_inversion_ns(kind, triangles, many) - build_ns) / double{many};
+    return {StructureKind::inversion, build_ns / executor.threads(), ray_ns};
 }
 
 } // namespace raywise::detail

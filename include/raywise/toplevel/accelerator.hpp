@@ -244,7 +244,9 @@ private:
 /// area's pencil holds (see pencil()) are the fast ones.
 class AreaHandle {
 public:
-    AreaHandle(const Accelerator& owner, AreaId id) : owner_(&owner), id_(id) {}
+    /// `id` must be one of the owner's areas.
+    AreaHandle(const Accelerator& owner, AreaId id)
+        : owner_(&owner), grid_(owner.local(id).grid.get()), id_(id) {}
 
     [[nodiscard]] AreaId id() const { return id_; }
 
@@ -305,6 +307,15 @@ public:
 private:
     [[nodiscard]] const LocalStructure& structure() const;
 
+    /// Whether the area's grid may be asked as it is: it exists, and its pencil holds the valid
+    /// ray. What is_valid would say of a parallel ray beyond its interval, the grid finds out
+    /// itself.
+    [[nodiscard]] bool is_gridded(const Ray& ray) const {
+        if (grid_ == nullptr || !grid_->pencil().holds(ray)) return false;
+        const bool is_parallel = grid_->pencil().kind() == Pencil::Kind::parallel;
+        return is_parallel ? ray.t_min >= 0 && ray.t_min <= ray.t_max : is_valid(ray);
+    }
+
     /// Whether the area's pencil holds every ray.
     [[nodiscard]] bool are_exact(std::span<const Ray> rays, const Executor& executor) const;
 
@@ -312,6 +323,7 @@ private:
     [[nodiscard]] bool is_worth_drawing(std::size_t rays) const;
 
     const Accelerator* owner_;
+    const PencilGrid* grid_; ///< the area's, or null
     AreaId id_;
 };
 

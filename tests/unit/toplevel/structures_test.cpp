@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <limits>
 #include <memory>
 
 namespace raywise {
@@ -129,6 +130,40 @@ TEST(Structures, BatchesOfExactRaysEqualSingleQueriesOnAnyNumberOfThreads) {
             ASSERT_EQ(any[i], expected.has_value()) << i;
             ASSERT_EQ(hits[i].prim, expected.value_or(Hit{}).prim) << i;
             ASSERT_EQ(hits[i].t, expected.value_or(Hit{}).t) << i;
+        }
+    }
+}
+
+TEST(Structures, InvalidRaysOfAGridMiss) {
+    const Scene scene = generate_terrain({.triangles = 1'000});
+    const Obb around = obb_around(bounds(scene));
+    const std::vector areas{
+        InfluenceArea::parallel("sun", {.direction = {0.3, -0.8, 0.5}, .region = around}),
+        InfluenceArea::radial("lamp", {.apex = {500, 900, 500}, .region = around})
+    };
+    const Accelerator accelerator =
+        build_accelerator(scene, areas, forced(StructureKind::pencil_grid));
+    constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    for (const AreaHandle handle : {accelerator["sun"], accelerator["lamp"]}) {
+        std::vector<Ray> rays;
+        for (const float bad : {nan, infinity, -infinity}) {
+            for (int axis = 0; axis < 3; ++axis) {
+                Vec3 point{500, 10, 500};
+                point[axis] = bad;
+                rays.push_back(handle.pencil().shadow_ray(point));
+            }
+            rays.push_back(handle.pencil().shadow_ray({500, 10, 500}, bad));
+        }
+        rays.push_back(handle.pencil().shadow_ray({500, 10, 500}, 2));
+        rays.back().t_max = 1;
+        rays.push_back({.origin = {500, 900, 500}, .direction = {0, 0, 0}});
+        rays.push_back({.origin = {500, 900, 500}, .direction = {0, nan, 0}});
+        for (const Ray& ray : rays) {
+            EXPECT_FALSE(is_valid(ray) && ray.t_min < infinity);
+            EXPECT_FALSE(handle.any_hit(ray));
+            EXPECT_FALSE(handle.closest_hit(ray));
+            EXPECT_FALSE(accelerator.any_hit(ray));
         }
     }
 }
