@@ -171,10 +171,10 @@ TEST(Collapse, WhatStopsMoreRaysForItsCostStandsLast) {
 
 /// What collapse minimizes.
 double cost_of(const WideBvh& tree, double block_cost) {
-    double cost = half_area(tree.box);
+    auto cost = static_cast<double>(half_area(tree.box));
     for (const WideNode& node : tree.nodes)
         for (std::size_t slot = 0; slot < WideNode::width && node.is_used(slot); ++slot) {
-            const double weight = half_area(node.box(slot));
+            const auto weight = static_cast<double>(half_area(node.box(slot)));
             const WideRef child = node.children[slot];
             if (!child.is_leaf()) {
                 cost += weight;
@@ -197,7 +197,7 @@ TEST(Collapse, CostsLessThanCuttingAtEveryThirdLevel) {
     double third_level = 0;
     const auto add = [&](const auto& self, NodeId id, int level) -> void {
         const Node& node = binary[id];
-        const double weight = half_area(node.box());
+        const auto weight = static_cast<double>(half_area(node.box()));
         if (node.is_leaf()) {
             third_level += 0.5 * weight;
             return;
