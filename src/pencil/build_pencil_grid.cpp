@@ -90,9 +90,10 @@ std::vector<PrimId> find_near(const Records& records, Vec3d apex, double nearest
     return near;
 }
 
-/// Coordinates so large that the filters might overflow are left to exact arithmetic.
+/// Coordinates so large that the filters might overflow are left to exact arithmetic. Differences
+/// to points within reach are below 2^10 of them, and products of three are the largest numbers.
 float doubt_of(double greatest) {
-    return greatest < 0x1p50 ? 0x1p-120F : std::numeric_limits<float>::infinity();
+    return greatest < 0x1p30 ? 0x1p-120F : std::numeric_limits<float>::infinity();
 }
 
 using Faces = std::array<std::unique_ptr<BuiltFace>, 6>;

@@ -192,6 +192,22 @@ TEST(PencilGrid, AgreesWithBruteForceFromDenormalsTo2To60) {
     compare_on_soups(Coordinates::wild, 15, 150, 60);
 }
 
+/// Found by a longer run: the product of three such differences is no float.
+TEST(PencilGrid, KnowsTheClosestHitWhereProductsOverflow) {
+    Soup soup;
+    soup.add(
+        {{-0x1.17bp-135F, -0x1.1dcdecp-60F, -0x1.971dp-112F},
+         {-0x1.1e35c8p+3F, 0x1.e297p-131F, 0x1.e216a6p+41F},
+         {-0x1.e57816p-84F, 0x1.99d068p+45F, -0x1.8p-146F}}
+    );
+    const Pencil pencil = Pencil::radial({-0x1.f91812p+2F, 0x1.3ba8cep+42F, 0x1.a96308p+41F});
+    const PencilGrid grid = build_pencil_grid(soup.view(), pencil);
+    const Ray ray = pencil.shadow_ray({0x1.6f55eap+44F, -0x1.014bccp+28F, -0x1.b392dep-51F});
+    Tally tally;
+    expect_same_as_brute_force(grid, soup.view(), ray, tally);
+    EXPECT_EQ(tally.unknown_closest, 0);
+}
+
 TEST(PencilGrid, OverNothingIsNeverHit) {
     const Soup empty;
     for (const Pencil& pencil : {Pencil::parallel({0, -1, 0}), Pencil::radial({1, 2, 3})}) {
