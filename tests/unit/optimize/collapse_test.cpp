@@ -80,7 +80,7 @@ public:
 
 private:
     const WideBvh& tree_;
-    const TriangleView& triangles_;
+    TriangleView triangles_;
 };
 
 bool same_bytes(const WideBvh& a, const WideBvh& b) {
