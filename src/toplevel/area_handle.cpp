@@ -60,6 +60,12 @@ const LocalStructure& AreaHandle::structure() const {
     return owner_->local(id_);
 }
 
+const WideBvh* AreaHandle::whole_tree() const {
+    const LocalStructure& own = structure();
+    if (own.is_whole && own.has_tree) return own.tree.wide();
+    return own.has_tree ? nullptr : owner_->global_tree().wide();
+}
+
 const InfluenceArea& AreaHandle::area() const {
     return owner_->areas()[static_cast<std::size_t>(id_)];
 }
@@ -84,6 +90,7 @@ std::optional<Hit> AreaHandle::closest_hit(const Ray& ray) const {
         if (verdict == Verdict::hit) return hit;
         if (verdict == Verdict::miss) return std::nullopt;
     }
+    if (const WideBvh* whole = whole_tree()) return raywise::closest_hit(*whole, ray);
     SilentQuery nobody;
     return closest_hit(ray, nobody);
 }
@@ -93,6 +100,7 @@ bool AreaHandle::any_hit(const Ray& ray) const {
         const Verdict verdict = grid_->any_hit(ray);
         if (verdict != Verdict::unknown) return verdict == Verdict::hit;
     }
+    if (const WideBvh* whole = whole_tree()) return raywise::any_hit(*whole, ray);
     SilentQuery nobody;
     return any_hit(ray, nobody);
 }

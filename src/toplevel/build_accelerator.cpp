@@ -150,7 +150,9 @@ public:
             progress_.step("build", 1 + result_.locals_.size(), steps());
             result_.locals_.push_back(build_local(area));
             if (result_.locals_.back().grid)
-                result_.with_grid_.push_back(to_area(result_.locals_.size() - 1));
+                result_.with_grid_.push_back(
+                    {to_area(result_.locals_.size() - 1), *result_.locals_.back().pencil}
+                );
         }
         if (result_.params_.gain) disable_what_saves_nothing(*result_.params_.gain);
         result_.any_tree_ = std::any_of(

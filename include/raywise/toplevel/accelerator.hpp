@@ -233,8 +233,22 @@ private:
     AcceleratorParams params_;
     std::vector<InfluenceArea> areas_;
     std::vector<LocalStructure> locals_;
-    std::vector<AreaId> with_grid_; ///< in ascending order
-    bool any_tree_ = false;         ///< whether some area has one, so that a search may pay
+    /// An area with a grid, and what its rays share.
+    struct Gridded {
+        AreaId area;
+        Pencil pencil;
+    };
+
+    /// Whether nothing of the areas concerns the ray, so that the global tree answers.
+    [[nodiscard]] bool is_of_no_area(const Ray& ray) const {
+        if (any_tree_) return false;
+        for (const Gridded& gridded : with_grid_)
+            if (gridded.pencil.holds(ray)) return false;
+        return true;
+    }
+
+    std::vector<Gridded> with_grid_; ///< by ascending area
+    bool any_tree_ = false;          ///< whether some area has one, so that a search may pay
     AnyRegionIndex index_;
     TracedTree global_tree_;
 };
@@ -306,6 +320,10 @@ public:
 
 private:
     [[nodiscard]] const LocalStructure& structure() const;
+
+    /// The wide tree over all triangles that answers what the grid does not, or null when there is
+    /// more to it than one tree.
+    [[nodiscard]] const WideBvh* whole_tree() const;
 
     /// Whether the area's grid may be asked as it is: it exists, and its pencil holds the valid
     /// ray. What is_valid would say of a parallel ray beyond its interval, the grid finds out

@@ -139,7 +139,8 @@ bool Accelerator::any_by_mode(const Ray& ray, const Candidates& candidates, Obse
 template <QueryObserver Observer>
 std::optional<Hit> Accelerator::closest_hit(const Ray& ray, Observer& seen) const {
     if (!is_valid(ray)) return std::nullopt;
-    for (const AreaId area : with_grid_) {
+    for (const auto& [area, pencil] : with_grid_) {
+        if (!pencil.holds(ray)) continue;
         Hit hit;
         const Verdict verdict = closest_in_grid(area, ray, hit, seen);
         if (verdict != Verdict::unknown)
@@ -151,7 +152,8 @@ std::optional<Hit> Accelerator::closest_hit(const Ray& ray, Observer& seen) cons
 template <QueryObserver Observer>
 bool Accelerator::any_hit(const Ray& ray, Observer& seen) const {
     if (!is_valid(ray)) return false;
-    for (const AreaId area : with_grid_) {
+    for (const auto& [area, pencil] : with_grid_) {
+        if (!pencil.holds(ray)) continue;
         const Verdict verdict = any_in_grid(area, ray, seen);
         if (verdict != Verdict::unknown) return verdict == Verdict::hit;
     }
