@@ -1,4 +1,4 @@
-// Queries of a pencil grid, compiled once for every instruction set.
+// Queries of a pencil grid. One file, because it is compiled once for each instruction set.
 #include "pencil/face_map.hpp"
 #include "pencil/grid_data.hpp"
 #include "pencil/kernels.hpp"

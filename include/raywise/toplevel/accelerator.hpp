@@ -266,7 +266,9 @@ public:
 
     [[nodiscard]] const InfluenceArea& area() const;
 
-    /// What the exact rays of the area share. Throws Error for an area that is not exact.
+    /// What the exact rays of the area share; rays are recognized bit for bit, so make them with
+    /// pencil().shadow_ray or along pencil().direction(). Throws Error for an area that is not
+    /// exact.
     [[nodiscard]] const Pencil& pencil() const;
 
     /// What was built for the area, and why.

@@ -2,7 +2,8 @@
 //
 // A triangle is drawn picture by picture, tile by tile, row of bins by row of bins; a row's part
 // between the edges is one run of slots. Lanes answer "surely missed" or "surely hit, at a depth
-// surely inside"; the rest is decided exactly.
+// surely inside"; the rest is decided exactly. One file, because it is compiled once for each
+// instruction set.
 
 // The same instructions as a neighbor's, or no gain here: fewer copies of the code.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
