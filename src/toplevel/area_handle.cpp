@@ -54,6 +54,21 @@ void occluded_by_blocks(
     }
 }
 
+/// Calls `work(rays, answers)` for parts of a batch that stay in the cache between a look at their
+/// rays and the tracing of them.
+template <class Answer, class Work>
+void for_each_part(
+    std::span<const Ray> rays,
+    std::span<Answer> answers,
+    const Executor& executor,
+    const Work& work
+) {
+    executor
+        .for_each_chunk(rays.size(), detail::batch_chunk, [&](std::size_t begin, std::size_t end) {
+            work(rays.subspan(begin, end - begin), answers.subspan(begin, end - begin));
+        });
+}
+
 } // namespace
 
 const LocalStructure& AreaHandle::structure() const {
@@ -105,6 +120,12 @@ bool AreaHandle::any_hit(const Ray& ray) const {
     return any_hit(ray, nobody);
 }
 
+bool AreaHandle::is_gridded(std::span<const Ray> rays) const {
+    return grid_ != nullptr && std::all_of(rays.begin(), rays.end(), [&](const Ray& ray) {
+               return grid_->covers(ray);
+           });
+}
+
 bool AreaHandle::are_exact(std::span<const Ray> rays, const Executor& executor) const {
     const std::optional<Pencil>& pencil = structure().pencil;
     if (!pencil) return false;
@@ -133,13 +154,15 @@ void AreaHandle::closest_hits(
 ) const {
     detail::check_answers(rays.size(), hits.size());
     const LocalStructure& own = structure();
-    const bool draws = is_worth_drawing(rays.size());
-    if ((!own.grid && !draws) || !are_exact(rays, executor))
-        return detail::closest_batch(*this, rays, hits, executor);
-    if (draws) return closest_hits_once(own.triangles->view(), *own.pencil, rays, hits, executor);
-    own.grid->closest_hits(
-        rays, hits, [&](const Ray& ray) { return closest_hit(ray).value_or(Hit{}); }, executor
-    );
+    if (is_worth_drawing(rays.size()) && are_exact(rays, executor))
+        return closest_hits_once(own.triangles->view(), *own.pencil, rays, hits, executor);
+    const auto answer = [&](const Ray& ray) { return closest_hit(ray).value_or(Hit{}); };
+    for_each_part(rays, hits, executor, [&](std::span<const Ray> part, std::span<Hit> answers) {
+        if (is_gridded(part))
+            grid_->closest_hits(part, answers, answer);
+        else
+            std::transform(part.begin(), part.end(), answers.begin(), answer);
+    });
 }
 
 void AreaHandle::any_hits(
@@ -149,11 +172,20 @@ void AreaHandle::any_hits(
 ) const {
     detail::check_answers(rays.size(), occluded.size());
     const LocalStructure& own = structure();
-    const bool draws = is_worth_drawing(rays.size());
-    if ((!own.grid && !draws) || !are_exact(rays, executor))
-        return detail::any_batch(*this, rays, occluded, executor);
-    if (draws) return any_hits_once(own.triangles->view(), *own.pencil, rays, occluded, executor);
-    own.grid->any_hits(rays, occluded, [&](const Ray& ray) { return any_hit(ray); }, executor);
+    if (is_worth_drawing(rays.size()) && are_exact(rays, executor))
+        return any_hits_once(own.triangles->view(), *own.pencil, rays, occluded, executor);
+    const auto answer = [&](const Ray& ray) { return any_hit(ray); };
+    for_each_part(
+        rays,
+        occluded,
+        executor,
+        [&](std::span<const Ray> part, std::span<bool> answers) {
+            if (is_gridded(part))
+                grid_->any_hits(part, answers, answer);
+            else
+                std::transform(part.begin(), part.end(), answers.begin(), answer);
+        }
+    );
 }
 
 void AreaHandle::occluded(

@@ -284,8 +284,8 @@ public:
     template <QueryObserver Observer>
     [[nodiscard]] bool any_hit(const Ray& ray, Observer& seen) const;
 
-    /// See Accelerator::closest_hits. Fastest when the pencil holds every ray: then a grid answers
-    /// in the order of its cells, and an inversion a large batch at once.
+    /// See Accelerator::closest_hits. Fastest when the pencil holds every ray: a grid then answers
+    /// several at a time, and an inversion a large batch at once.
     void closest_hits(
         std::span<const Ray> rays,
         std::span<Hit> hits,
@@ -335,6 +335,9 @@ private:
         const bool is_parallel = grid_->pencil().kind() == Pencil::Kind::parallel;
         return is_parallel ? ray.t_min >= 0 && ray.t_min <= ray.t_max : is_valid(ray);
     }
+
+    /// Whether the area's grid covers every ray.
+    [[nodiscard]] bool is_gridded(std::span<const Ray> rays) const;
 
     /// Whether the area's pencil holds every ray.
     [[nodiscard]] bool are_exact(std::span<const Ray> rays, const Executor& executor) const;
