@@ -154,7 +154,10 @@ bool look(
         return is_above && is_below;
     }
     if ((u > 0) != (v > 0) || (v > 0) != (w > 0)) return true;
-    if (!(sum_error <= 0x1p-31 * std::abs(sum))) return false;
+    // Weights are good to 2^-22 only where their own errors are small beside the sum.
+    const double least_sum = std::abs(sum) * 0x1p-26;
+    if (!(sum_error <= least_sum * 0x1p-5 && v_error <= least_sum && w_error <= least_sum))
+        return false;
 
     const double inverse = 1 / sum;
     const double t = volume * inverse;

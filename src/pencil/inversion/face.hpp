@@ -5,10 +5,12 @@
 #include <raywise/geometry/ray.hpp>
 #include <raywise/geometry/vec.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
+#include <limits>
 
 namespace raywise::detail {
 
@@ -66,7 +68,9 @@ public:
     [[nodiscard]] FaceRay ray(const Ray& ray, bool leaves) const {
         const double speed = std::abs(difference(ray.direction, z_, 0));
         const auto t_min = static_cast<double>(ray.t_min);
-        const auto t_max = static_cast<double>(ray.t_max);
+        // Hits at an infinite t do not count, and a denormal direction gets there.
+        const auto t_max =
+            static_cast<double>(std::min(ray.t_max, std::numeric_limits<float>::max()));
         const FacePoint from = point<is_radial>(ray.origin);
         FaceRay seen{};
         if (!is_radial) {

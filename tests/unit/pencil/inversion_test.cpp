@@ -191,6 +191,18 @@ TEST(Inversion, AgreesWithBruteForceOnSoups) {
     EXPECT_GT(hits, 5000U);
 }
 
+/// A direction so small that t overflows: a hit at an infinite t is none.
+TEST(Inversion, AgreesWithBruteForceWhereTOverflows) {
+    Soup soup;
+    soup.add({{-0x1p59F, 0x1.e2p29F, 0}, {0, 0x1.e2p29F, 0x1p52F}, {0x1p57F, 0x1.e2p29F, 0}});
+    const Pencil pencil = Pencil::parallel({0, 0x1.5p-127F, 0});
+    Ray ray{.origin = {0x1p-15F, 0, 0x1p50F}, .direction = pencil.direction(), .t_min = 0.25F};
+    EXPECT_EQ(expect_brute_force(soup.view(), pencil, {ray}), 0U);
+    ray.origin.y = 0x1.e2p29F;
+    ray.t_min = 0;
+    EXPECT_EQ(expect_brute_force(soup.view(), pencil, {ray}), 1U);
+}
+
 TEST(Inversion, AgreesWithBruteForceAtAllScales) {
     for (std::uint64_t i = 0; i < 300; ++i) {
         Rng rng(42, i);
