@@ -21,6 +21,7 @@
 #include <raywise/build/binned_params.hpp>            // IWYU pragma: export
 #include <raywise/build/bins.hpp>                     // IWYU pragma: export
 #include <raywise/build/cut_triangle.hpp>             // IWYU pragma: export
+#include <raywise/build/descent.hpp>                  // IWYU pragma: export
 #include <raywise/build/few_ranks.hpp>                // IWYU pragma: export
 #include <raywise/build/guided.hpp>                   // IWYU pragma: export
 #include <raywise/build/guided_params.hpp>            // IWYU pragma: export
@@ -93,6 +94,7 @@
 #include <raywise/geometry/silhouette.hpp>            // IWYU pragma: export
 #include <raywise/geometry/solid_angle.hpp>           // IWYU pragma: export
 #include <raywise/geometry/triangle.hpp>              // IWYU pragma: export
+#include <raywise/geometry/triangle_copy.hpp>         // IWYU pragma: export
 #include <raywise/geometry/triangle_view.hpp>         // IWYU pragma: export
 #include <raywise/geometry/vec.hpp>                   // IWYU pragma: export
 #include <raywise/io/area_file.hpp>                   // IWYU pragma: export
@@ -133,7 +135,6 @@
 #include <raywise/toplevel/served.hpp>                // IWYU pragma: export
 #include <raywise/toplevel/structure_choice.hpp>      // IWYU pragma: export
 #include <raywise/toplevel/traced_tree.hpp>           // IWYU pragma: export
-#include <raywise/toplevel/triangle_copy.hpp>         // IWYU pragma: export
 #include <raywise/trace/all_hits.hpp>                 // IWYU pragma: export
 #include <raywise/trace/any_hit.hpp>                  // IWYU pragma: export
 #include <raywise/trace/brute_force.hpp>              // IWYU pragma: export

@@ -8,7 +8,6 @@
 #include <raywise/geometry/vec.hpp>
 
 #include <cstddef>
-#include <cstdint>
 
 namespace raywise {
 
@@ -22,24 +21,13 @@ BoxFrame box_frame_along(Vec3d direction) {
     return frame;
 }
 
-FramedMesh
+TriangleCopy
 to_frame(const TriangleView& triangles, const BoxFrame& frame, const Executor& executor) {
-    if (triangles.size() > 0xFFFFFFFFU / 3) throw Error("frame: too many triangles");
-    FramedMesh mesh;
-    mesh.vertices.resize(3 * triangles.size());
-    mesh.corners.resize(triangles.size());
-    constexpr std::size_t chunk = 8192;
-    executor.for_each_chunk(triangles.size(), chunk, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const Triangle triangle = triangles[to_prim(i)];
-            mesh.vertices[3 * i] = frame.to_frame(triangle.v0);
-            mesh.vertices[3 * i + 1] = frame.to_frame(triangle.v1);
-            mesh.vertices[3 * i + 2] = frame.to_frame(triangle.v2);
-            const auto first = static_cast<std::uint32_t>(3 * i);
-            mesh.corners[i] = {first, first + 1, first + 2};
-        }
-    });
-    return mesh;
+    const auto in_frame = [&](std::size_t i) -> Triangle {
+        const auto& [v0, v1, v2] = triangles[to_prim(i)];
+        return {frame.to_frame(v0), frame.to_frame(v1), frame.to_frame(v2)};
+    };
+    return copy_triangles(triangles.size(), in_frame, executor);
 }
 
 } // namespace raywise

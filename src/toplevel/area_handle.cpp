@@ -32,7 +32,7 @@ Ray shadow_ray(const Pencil& pencil, Vec3 point, float offset) {
     return ray;
 }
 
-/// Answers the rays that `ray_of(i)` makes, a block at a time: a batch that a grid can sort,
+/// Answers the rays that `ray_of(i)` makes, a block at a time: large enough to be drawn over,
 /// without room for all rays at once.
 template <class RayOf>
 void occluded_by_blocks(

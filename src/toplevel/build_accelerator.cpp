@@ -102,15 +102,6 @@ double measure_gain(const Accelerator& accelerator, AreaId id, const GainParams&
     return (cost_of(global_alone) - cost_of(with_area)) / static_cast<double>(params.rays);
 }
 
-/// Primitive i becomes ids[i].
-void remap_prims(WideBvh& tree, const std::vector<PrimId>& ids) {
-    for (TriangleBlock& block : tree.blocks) {
-        for (PrimId& prim : block.prims) {
-            if (prim != no_prim) prim = ids[to_index(prim)];
-        }
-    }
-}
-
 } // namespace
 
 namespace detail {
@@ -180,7 +171,12 @@ private:
             );
             break;
         case StructureKind::inversion:
-            if (!copy_) copy_ = std::make_shared<const TriangleCopy>(triangles_);
+            if (!copy_)
+                copy_ = std::make_shared<const TriangleCopy>(copy_triangles(
+                    triangles_.size(),
+                    [&](std::size_t i) { return triangles_[to_prim(i)]; },
+                    executor_
+                ));
             structure.triangles = copy_;
             break;
         case StructureKind::framed_tree:
@@ -207,7 +203,9 @@ private:
             structure.expected_cost = expected_cost(tree, area, params.local.binned.cost);
             structure.tree = TracedTree(std::move(tree), triangles_);
         } else {
-            const TriangleCopy subset(triangles_, members);
+            const TriangleCopy subset = copy_triangles(
+                members.size(), [&](std::size_t i) { return triangles_[members[i]]; }, executor_
+            );
             WideBvh tree = build_wide(
                 subset.view(),
                 area.distribution,

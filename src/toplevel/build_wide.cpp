@@ -118,7 +118,7 @@ WideBvh build_framed(
     if (!(cone_half_angle_deg >= 0 && cone_half_angle_deg <= 60))
         throw Error("build_framed: cone_half_angle_deg must be in [0, 60]");
     const BoxFrame frame = box_frame_along(to_double(direction));
-    const FramedMesh mesh = to_frame(triangles, frame, executor);
+    const TriangleCopy mesh = to_frame(triangles, frame, executor);
     // |cos| averages 2 / pi over the directions around the axis; a trace of the surface area keeps
     // boxes that stand along the axis from being free.
     const double slope = std::tan(cone_half_angle_deg * std::numbers::pi / 180);

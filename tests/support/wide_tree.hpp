@@ -99,7 +99,7 @@ wide_tree(const TriangleView& triangles, std::size_t leaf_size = 4, std::size_t 
 /// The same with boxes in another frame.
 inline WideBvh
 framed_tree(const TriangleView& triangles, const BoxFrame& frame, std::size_t leaf_size = 4) {
-    const FramedMesh mesh = to_frame(triangles, frame);
+    const TriangleCopy mesh = to_frame(triangles, frame);
     const Bvh binary = median_split(mesh.view(), leaf_size);
     WideBvh tree = WideTreeMaker(binary, triangles, 3).make();
     tree.frame = frame;

@@ -76,24 +76,6 @@ void ask_all(
     structure.closest_hits(rays, answers, executor);
 }
 
-inline void ask_oracle(
-    const ExactOracle& oracle,
-    std::span<const Ray> rays,
-    std::span<bool> answers,
-    const Executor& executor
-) {
-    oracle.any_hits(rays, answers, executor);
-}
-
-inline void ask_oracle(
-    const ExactOracle& oracle,
-    std::span<const Ray> rays,
-    std::span<Hit> answers,
-    const Executor& executor
-) {
-    oracle.closest_hits(rays, answers, executor);
-}
-
 inline void ask_peer(
     const PeerRays& rays,
     const EmbreePeer& peer,
@@ -161,7 +143,7 @@ public:
         for (const EmitterRays& of_emitter : rays.emitters)
             peer_rays_.emplace_back(of_emitter.rays);
         for_each_emitter(right_, [&](std::size_t e, std::span<Answer> answers) {
-            ask_oracle(contest.oracle, rays.emitters[e].rays, answers, machine.build);
+            ask_all(contest.oracle, rays.emitters[e].rays, answers, machine.build);
         });
     }
 

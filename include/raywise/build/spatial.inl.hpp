@@ -2,6 +2,7 @@
 #pragma once
 
 #include <raywise/build/binned.hpp>
+#include <raywise/build/descent.hpp>
 #include <raywise/build/node_metric.hpp>
 #include <raywise/build/prim_box.hpp>
 #include <raywise/build/slot_ranks.hpp>
@@ -54,11 +55,6 @@ private:
         Task right;
     };
 
-    /// Subtrees of fewer references stay on one thread.
-    static constexpr std::size_t parallel_grain = 2048;
-
-    NodeBlocks build_parallel(const Task& task, const M& measure);
-    std::size_t build_serial(const Task& task, const M& measure, std::size_t next);
     [[nodiscard]] std::optional<Children>
     divide(const Task& task, const M& measure, const Executor& executor);
 
@@ -86,14 +82,6 @@ private:
     /// Two tasks that share the room of their parent as they share its references.
     [[nodiscard]] Children
     share_out(const Task& task, std::size_t left_count, std::size_t right_count) const;
-
-    [[nodiscard]] bool is_leaf_cheaper(std::size_t count, double sum, float mass) const {
-        const CostConstants& cost = params_.binned.cost;
-        const double split = 2 * cost.node + cost.prim * (sum / static_cast<double>(mass));
-        return !(split < cost.prim * static_cast<double>(count));
-    }
-
-    void put_leaf(const Task& task);
 
     const TriangleView& triangles_;
     const SpatialParams& params_;
@@ -134,46 +122,9 @@ Bvh SpatialBuild<M>::build(const M& measure) {
     const auto& local = narrowed_to(measure, root.box);
     root.mass.mass = static_cast<float>(local(root.box));
     root_mass_ = {root.mass.mass, SurfaceMeasure{}(root.box), SideMeasure{}(root.box)};
-    const NodeBlocks blocks = build_parallel(root, local);
+    const Descent descent(*nodes_, executor_, [&](const auto&... args) { return divide(args...); });
+    const NodeBlocks blocks = descent(root, local);
     return close_ranks(pack_nodes(*nodes_, blocks, executor_), slots_, executor_);
-}
-
-template <HitMeasure M>
-NodeBlocks SpatialBuild<M>::build_parallel(const Task& task, const M& measure) {
-    if (executor_.threads() == 1 || task.range.count() < parallel_grain) {
-        const std::size_t begin = NodeRoom::first_slot(task.range.first);
-        const std::size_t end = build_serial(task, measure, begin);
-        return end > begin ? NodeBlocks{{begin, end}} : NodeBlocks{};
-    }
-    std::optional<Children> children = divide(task, measure, executor_);
-    if (!children) return {};
-
-    const std::size_t pair = NodeRoom::pair_slot(children->right.range.first);
-    children->left.slot = pair;
-    children->right.slot = pair + 1;
-    nodes_->put(task.slot, Node::inner(task.box, to_node(pair)));
-    NodeBlocks left;
-    NodeBlocks right;
-    executor_.invoke(
-        [&] { left = build_parallel(children->left, narrowed_to(measure, children->left.box)); },
-        [&] { right = build_parallel(children->right, narrowed_to(measure, children->right.box)); }
-    );
-    NodeBlocks all{{pair, pair + 2}};
-    all.insert(all.end(), left.begin(), left.end());
-    all.insert(all.end(), right.begin(), right.end());
-    return all;
-}
-
-/// Puts the descendants at `next` and after; returns the slot behind the last.
-template <HitMeasure M>
-std::size_t SpatialBuild<M>::build_serial(const Task& task, const M& measure, std::size_t next) {
-    std::optional<Children> children = divide(task, measure, serial_executor());
-    if (!children) return next;
-    children->left.slot = next;
-    children->right.slot = next + 1;
-    nodes_->put(task.slot, Node::inner(task.box, to_node(next)));
-    next = build_serial(children->left, narrowed_to(measure, children->left.box), next + 2);
-    return build_serial(children->right, narrowed_to(measure, children->right.box), next);
 }
 
 template <HitMeasure M>
@@ -185,7 +136,7 @@ auto SpatialBuild<M>::divide(const Task& task, const M& measure, const Executor&
         children = with_metric(mass.metric, measure, [&](const auto& metric) {
             return halve(task, mass, metric, executor);
         });
-    if (!children) put_leaf(task);
+    if (!children) put_leaf(*nodes_, slots_, task);
     return children;
 }
 
@@ -205,7 +156,7 @@ auto SpatialBuild<M>::halve(
     if (count <= limits.max_leaf_size) {
         const bool has_split = is_cut || split;
         const double sum = is_cut ? cut.cost.sum : split ? split->cost.sum : 0;
-        if (!has_split || is_leaf_cheaper(count, sum, mass.mass)) return std::nullopt;
+        if (!has_split || is_leaf_cheaper(limits.cost, count, sum, mass.mass)) return std::nullopt;
     }
     const std::size_t most = capacity(limits.max_leaf_size, limits.max_depth - (task.level + 1));
     const auto finish = [&](Children children, const Aabb& left, const Aabb& right) {
@@ -347,20 +298,6 @@ auto SpatialBuild<M>::share_out(const Task& task, std::size_t left_count, std::s
     children.right.limit = task.limit;
     children.right.level = task.level + 1;
     return children;
-}
-
-template <HitMeasure M>
-void SpatialBuild<M>::put_leaf(const Task& task) {
-    for (std::size_t i = task.range.first; i < task.range.last; ++i)
-        slots_[i] = task.range.from[i].id();
-    nodes_->put(
-        task.slot,
-        Node::leaf(
-            task.box,
-            static_cast<std::uint32_t>(task.range.first),
-            static_cast<std::uint32_t>(task.range.count())
-        )
-    );
 }
 
 template <HitMeasure M>

@@ -5,6 +5,7 @@
 #include <raywise/build/axis_policy.hpp>
 #include <raywise/build/binned_params.hpp>
 #include <raywise/build/bins.hpp>
+#include <raywise/build/descent.hpp>
 #include <raywise/build/node_metric.hpp>
 #include <raywise/build/prim_box.hpp>
 #include <raywise/build/split.hpp>
@@ -68,25 +69,12 @@ private:
         Task right;
     };
 
-    /// Subtrees of fewer primitives stay on one thread.
-    static constexpr std::size_t parallel_grain = 2048;
-
-    NodeBlocks build_parallel(const Task& task, const M& measure);
-    std::size_t build_serial(const Task& task, const M& measure, std::size_t next);
     [[nodiscard]] std::optional<Children>
     divide(const Task& task, const M& measure, const Executor& executor);
 
     template <class Measure>
     [[nodiscard]] std::optional<Halves>
     halve(const Task& task, NodeMass mass, const Measure& metric, const Executor& executor) const;
-
-    [[nodiscard]] bool is_leaf_cheaper(std::size_t count, double sum, float mass) const {
-        const double split =
-            2 * params_.cost.node + params_.cost.prim * (sum / static_cast<double>(mass));
-        return !(split < params_.cost.prim * static_cast<double>(count));
-    }
-
-    void put_leaf(const Task& task);
 
     const BinnedParams& params_;
     const Executor& executor_;
@@ -108,46 +96,9 @@ Bvh TopDown<M, Search>::build(std::span<const Aabb> boxes, const M& measure) {
     root.box = to_aabb(bound_boxes(root.range, executor_));
     const auto& local = narrowed_to(measure, root.box);
     root.mass.mass = static_cast<float>(local(root.box));
-    const NodeBlocks blocks = build_parallel(root, local);
+    const Descent descent(*room_, executor_, [&](const auto&... args) { return divide(args...); });
+    const NodeBlocks blocks = descent(root, local);
     return {pack_nodes(*room_, blocks, executor_), std::move(prims_)};
-}
-
-template <HitMeasure M, class Search>
-NodeBlocks TopDown<M, Search>::build_parallel(const Task& task, const M& measure) {
-    if (executor_.threads() == 1 || task.range.count() < parallel_grain) {
-        const std::size_t begin = NodeRoom::first_slot(task.range.first);
-        const std::size_t end = build_serial(task, measure, begin);
-        return end > begin ? NodeBlocks{{begin, end}} : NodeBlocks{};
-    }
-    std::optional<Children> children = divide(task, measure, executor_);
-    if (!children) return {};
-
-    const std::size_t pair = NodeRoom::pair_slot(children->right.range.first);
-    children->left.slot = pair;
-    children->right.slot = pair + 1;
-    room_->put(task.slot, Node::inner(task.box, to_node(pair)));
-    NodeBlocks left;
-    NodeBlocks right;
-    executor_.invoke(
-        [&] { left = build_parallel(children->left, narrowed_to(measure, children->left.box)); },
-        [&] { right = build_parallel(children->right, narrowed_to(measure, children->right.box)); }
-    );
-    NodeBlocks all{{pair, pair + 2}};
-    all.insert(all.end(), left.begin(), left.end());
-    all.insert(all.end(), right.begin(), right.end());
-    return all;
-}
-
-/// Puts the descendants at `next` and after; returns the slot behind the last.
-template <HitMeasure M, class Search>
-std::size_t TopDown<M, Search>::build_serial(const Task& task, const M& measure, std::size_t next) {
-    std::optional<Children> children = divide(task, measure, serial_executor());
-    if (!children) return next;
-    children->left.slot = next;
-    children->right.slot = next + 1;
-    room_->put(task.slot, Node::inner(task.box, to_node(next)));
-    next = build_serial(children->left, narrowed_to(measure, children->left.box), next + 2);
-    return build_serial(children->right, narrowed_to(measure, children->right.box), next);
 }
 
 template <HitMeasure M, class Search>
@@ -160,7 +111,7 @@ auto TopDown<M, Search>::divide(const Task& task, const M& measure, const Execut
             return halve(task, mass, metric, executor);
         });
     if (!halves) {
-        put_leaf(task);
+        put_leaf(*room_, prims_, task);
         return std::nullopt;
     }
     const std::size_t middle = task.range.first + halves->left_count;
@@ -187,7 +138,7 @@ std::optional<Halves> TopDown<M, Search>::halve(
     const std::size_t count = task.range.count();
     const std::optional<Split> split = search_(task.range, task.box, metric, executor);
     if (count <= params_.max_leaf_size &&
-        (!split || is_leaf_cheaper(count, split->cost.sum, mass.mass)))
+        (!split || is_leaf_cheaper(params_.cost, count, split->cost.sum, mass.mass)))
         return std::nullopt;
 
     const int levels_left = params_.max_depth - (task.level + 1);
@@ -223,20 +174,6 @@ std::optional<Halves> TopDown<M, Search>::halve(
         static_cast<float>(metric(left)),
         static_cast<float>(metric(right))
     };
-}
-
-template <HitMeasure M, class Search>
-void TopDown<M, Search>::put_leaf(const Task& task) {
-    for (std::size_t i = task.range.first; i < task.range.last; ++i)
-        prims_[i] = task.range.from[i].id();
-    room_->put(
-        task.slot,
-        Node::leaf(
-            task.box,
-            static_cast<std::uint32_t>(task.range.first),
-            static_cast<std::uint32_t>(task.range.count())
-        )
-    );
 }
 
 } // namespace raywise

@@ -3,12 +3,9 @@
 #pragma once
 
 #include <raywise/core/executor.hpp>
+#include <raywise/geometry/triangle_copy.hpp>
 #include <raywise/geometry/triangle_view.hpp>
 #include <raywise/geometry/vec.hpp>
-
-#include <array>
-#include <cstdint>
-#include <vector>
 
 namespace raywise {
 
@@ -34,17 +31,9 @@ struct BoxFrame {
 /// or not finite.
 [[nodiscard]] BoxFrame box_frame_along(Vec3d direction);
 
-/// Triangles in a frame, for builders to make a tree of.
-struct FramedMesh {
-    std::vector<Vec3> vertices; ///< three for each triangle
-    std::vector<std::array<std::uint32_t, 3>> corners;
-
-    [[nodiscard]] TriangleView view() const { return {vertices, corners}; }
-};
-
 /// Triangle i of the result is triangle i of `triangles` in the frame. At most 2^32 / 3 triangles;
 /// Error above.
-[[nodiscard]] FramedMesh to_frame(
+[[nodiscard]] TriangleCopy to_frame(
     const TriangleView& triangles,
     const BoxFrame& frame,
     const Executor& executor = serial_executor()

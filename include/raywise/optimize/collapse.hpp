@@ -9,9 +9,11 @@
 #include <raywise/geometry/hit_measure.hpp>
 #include <raywise/geometry/triangle_view.hpp>
 #include <raywise/optimize/child_order.hpp>
+#include <raywise/optimize/node_masses.hpp>
 
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 namespace raywise {
 
@@ -60,18 +62,17 @@ template <HitMeasure M>
     const CollapseParams& params = {},
     const Executor& executor = serial_executor()
 ) {
-    const LargeBuffer<float> masses(tree.nodes.size());
+    const std::vector<float> masses = node_masses(tree, measure, executor);
     const LargeBuffer<NodeOutlook> outlooks(tree.nodes.size());
     constexpr std::size_t chunk = 4096;
     executor.for_each_chunk(tree.nodes.size(), chunk, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const Node& node = tree.nodes[i];
-            masses[i] = static_cast<float>(measure(node.box()));
             if (node.is_leaf()) outlooks[i] = leaf_outlook(tree, node, triangles, measure, {});
         }
     });
     return detail::collapse_weighed(
-        tree, triangles, {masses.get(), outlooks.get()}, params, executor
+        tree, triangles, {masses.data(), outlooks.get()}, params, executor
     );
 }
 

@@ -9,6 +9,7 @@
 #include <raywise/core/progress.hpp>
 #include <raywise/distribution/influence_area.hpp>
 #include <raywise/geometry/ray.hpp>
+#include <raywise/geometry/triangle_copy.hpp>
 #include <raywise/geometry/triangle_view.hpp>
 #include <raywise/geometry/vec.hpp>
 #include <raywise/pencil/pencil.hpp>
@@ -22,7 +23,6 @@
 #include <raywise/toplevel/served.hpp>
 #include <raywise/toplevel/structure_choice.hpp>
 #include <raywise/toplevel/traced_tree.hpp>
-#include <raywise/toplevel/triangle_copy.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -197,6 +197,20 @@ private:
         std::size_t count = 0;
     };
 
+    /// An area with a grid, and what its rays share.
+    struct Gridded {
+        AreaId area;
+        Pencil pencil;
+    };
+
+    /// Whether nothing of the areas concerns the ray, so that the global tree answers.
+    [[nodiscard]] bool is_of_no_area(const Ray& ray) const {
+        if (any_tree_) return false;
+        for (const Gridded& gridded : with_grid_)
+            if (gridded.pencil.holds(ray)) return false;
+        return true;
+    }
+
     /// The areas to ask for a valid ray, best first.
     [[nodiscard]] Candidates candidates_of(const Ray& ray) const;
 
@@ -233,20 +247,6 @@ private:
     AcceleratorParams params_;
     std::vector<InfluenceArea> areas_;
     std::vector<LocalStructure> locals_;
-    /// An area with a grid, and what its rays share.
-    struct Gridded {
-        AreaId area;
-        Pencil pencil;
-    };
-
-    /// Whether nothing of the areas concerns the ray, so that the global tree answers.
-    [[nodiscard]] bool is_of_no_area(const Ray& ray) const {
-        if (any_tree_) return false;
-        for (const Gridded& gridded : with_grid_)
-            if (gridded.pencil.holds(ray)) return false;
-        return true;
-    }
-
     std::vector<Gridded> with_grid_; ///< by ascending area
     bool any_tree_ = false;          ///< whether some area has one, so that a search may pay
     AnyRegionIndex index_;

@@ -139,10 +139,9 @@ bool Accelerator::any_by_mode(const Ray& ray, const Candidates& candidates, Obse
 template <QueryObserver Observer>
 std::optional<Hit> Accelerator::closest_hit(const Ray& ray, Observer& seen) const {
     if (!is_valid(ray)) return std::nullopt;
-    for (const auto& [area, pencil] : with_grid_) {
-        if (!pencil.holds(ray)) continue;
+    for (const Gridded& gridded : with_grid_) {
         Hit hit;
-        const Verdict verdict = closest_in_grid(area, ray, hit, seen);
+        const Verdict verdict = closest_in_grid(gridded.area, ray, hit, seen);
         if (verdict != Verdict::unknown)
             return verdict == Verdict::hit ? std::optional(hit) : std::nullopt;
     }
@@ -152,9 +151,8 @@ std::optional<Hit> Accelerator::closest_hit(const Ray& ray, Observer& seen) cons
 template <QueryObserver Observer>
 bool Accelerator::any_hit(const Ray& ray, Observer& seen) const {
     if (!is_valid(ray)) return false;
-    for (const auto& [area, pencil] : with_grid_) {
-        if (!pencil.holds(ray)) continue;
-        const Verdict verdict = any_in_grid(area, ray, seen);
+    for (const Gridded& gridded : with_grid_) {
+        const Verdict verdict = any_in_grid(gridded.area, ray, seen);
         if (verdict != Verdict::unknown) return verdict == Verdict::hit;
     }
     return any_by_mode(ray, candidates_of(ray), seen);

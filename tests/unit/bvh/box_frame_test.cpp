@@ -63,8 +63,8 @@ TEST(BoxFrame, MeshIsTheSameForAnyNumberOfThreads) {
     }
     const TriangleView view(vertices, corners);
     const BoxFrame frame = box_frame_along({0.3, -1, 0.4});
-    const FramedMesh serial = to_frame(view, frame);
-    const FramedMesh parallel = to_frame(view, frame, Executor(3));
+    const TriangleCopy serial = to_frame(view, frame);
+    const TriangleCopy parallel = to_frame(view, frame, Executor(3));
     EXPECT_EQ(serial.vertices, parallel.vertices);
     EXPECT_EQ(serial.corners, parallel.corners);
     const Triangle triangle = view[PrimId{777}];
