@@ -98,6 +98,7 @@ double scale(
     map.depth_scale = (deepest - shallowest - 8) / deep;
     map.depth_offset = shallowest - ranges.z.least * map.depth_scale;
     map.depth_slack = 1 + 0x1p-148 * static_cast<double>(map.speed) * map.depth_scale;
+    set_lanes(map, is_radial);
     const double greatest = is_radial ? 2 : 4 * map.reach;
     return 0x1p-49 * greatest * std::max(map.scale_u, map.scale_v);
 }
@@ -129,6 +130,7 @@ std::vector<Piece> snap(
                 4 + static_cast<std::int32_t>(std::min(std::ceil(rounding + strays), 0x1p27));
             piece.prim = from.prim;
             piece.is_part = from.is_part;
+            piece.reaches_apex = from.reaches_apex;
         }
     });
     return pieces;
@@ -190,6 +192,7 @@ void add(PencilGridStatistics& to, const PencilGridStatistics& from) {
 void build_cells(
     BuiltFace& built,
     const Contents& contents,
+    const EdgeLines& edges,
     bool is_radial,
     const PencilGridParams& params,
     const Executor& executor
@@ -200,7 +203,8 @@ void build_cells(
     built.part_cells = std::max<std::size_t>(16, cells / 256);
     built.parts.resize((cells + built.part_cells - 1) / built.part_cells);
     executor.for_each_chunk(cells, built.part_cells, [&](std::size_t begin, std::size_t end) {
-        auto builder = std::make_unique<CellBuilder>(face.map, is_radial, built.pieces, params);
+        auto builder =
+            std::make_unique<CellBuilder>(face.map, is_radial, built.pieces, edges, params);
         const auto width = static_cast<std::size_t>(face.width);
         for (std::size_t i = begin; i < end; ++i) {
             const Window window{
@@ -229,8 +233,9 @@ void build_cells(
 std::unique_ptr<BuiltFace> build_face(
     const std::vector<RawPiece>& pieces,
     const FaceMap& unscaled,
+    const Records& records,
     bool is_radial,
-    double greatest_coordinate,
+    Vec3d apex,
     const PencilGridParams& params,
     double coarsening,
     std::size_t most_references,
@@ -243,13 +248,14 @@ std::unique_ptr<BuiltFace> build_face(
         measure(pieces, is_radial, executor),
         pieces.size(),
         is_radial,
-        greatest_coordinate,
+        records.greatest,
         params.cell_size * coarsening
     );
     built->pieces = snap(pieces, built->face, rounding, executor);
     Contents contents;
     if (!fill(contents, *built, most_references, executor)) return nullptr;
-    build_cells(*built, contents, is_radial, params, executor);
+    const EdgeLines edges(built->face.map, is_radial, records.values, apex);
+    build_cells(*built, contents, edges, is_radial, params, executor);
     return built;
 }
 

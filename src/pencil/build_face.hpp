@@ -30,8 +30,9 @@ struct BuiltFace {
 [[nodiscard]] std::unique_ptr<BuiltFace> build_face(
     const std::vector<RawPiece>& pieces,
     const FaceMap& unscaled,
+    const Records& records,
     bool is_radial,
-    double greatest_coordinate,
+    Vec3d apex,
     const PencilGridParams& params,
     double coarsening,
     std::size_t most_references,

@@ -1,4 +1,5 @@
 #include "pencil/build_face.hpp"
+#include "pencil/face_map.hpp"
 #include "pencil/face_pieces.hpp"
 #include "pencil/grid_data.hpp"
 #include "pencil/kernels.hpp"
@@ -90,11 +91,9 @@ std::vector<PrimId> find_near(const Records& records, Vec3d apex, double nearest
     return near;
 }
 
-/// Coordinates so large that the filters might overflow are left to exact arithmetic. Differences
-/// to points within reach are below 2^10 of them, and products of three are the largest numbers.
-float doubt_of(double greatest) {
-    return greatest < 0x1p30 ? 0x1p-120F : std::numeric_limits<float>::infinity();
-}
+/// Larger coordinates are left to exact arithmetic. Differences to points within reach are below
+/// 2^10 of them, and products of three are the largest numbers.
+constexpr double tame = 0x1p50;
 
 using Faces = std::array<std::unique_ptr<BuiltFace>, 6>;
 
@@ -126,7 +125,8 @@ RawFaces raw_faces(PencilGrid::Data& data, const Records& records, const Executo
         map.whole_t = std::isfinite(whole) ? whole : std::numeric_limits<float>::quiet_NaN();
         // Without triangles nothing is too far away.
         if (records.ids.empty()) map.reach = std::numeric_limits<double>::infinity();
-        data.doubt = doubt_of(records.greatest);
+        data.is_tame = records.greatest < tame;
+        set_lanes(map, false);
         faces.pieces[0] = parallel_pieces(records, direction, executor);
         return faces;
     }
@@ -139,11 +139,12 @@ RawFaces raw_faces(PencilGrid::Data& data, const Records& records, const Executo
     }
     const double reach =
         records.ids.empty() ? std::numeric_limits<double>::infinity() : 4 * farthest;
-    data.doubt = doubt_of(
-        std::max({records.greatest, farthest, std::abs(apex.x), std::abs(apex.y), std::abs(apex.z)})
-    );
+    data.is_tame =
+        std::max({records.greatest, farthest, std::abs(apex.x), std::abs(apex.y), std::abs(apex.z)}
+        ) < tame;
     const double nearest = std::max(reach * near_share, 0x1p-140);
     data.near = find_near(records, apex, nearest);
+    data.has_near = !data.near.empty();
     for (int axis = 0; axis < 3; ++axis)
         for (const int side : {0, 1}) {
             const auto face = static_cast<std::size_t>(2 * axis + side);
@@ -153,6 +154,7 @@ RawFaces raw_faces(PencilGrid::Data& data, const Records& records, const Executo
             map.axis_v = (axis + 2) % 3;
             map.sign = side == 0 ? 1 : -1;
             map.reach = reach;
+            set_lanes(map, true);
             faces.pieces[face] = radial_pieces(
                 records, data.pencil.apex(), axis, side == 0 ? 1 : -1, nearest, reach, executor
             );
@@ -274,8 +276,9 @@ PencilGrid build_pencil_grid(
             faces[f] = build_face(
                 raw.pieces[f],
                 raw.maps[f],
+                records,
                 pencil.kind() == Pencil::Kind::radial,
-                ids.greatest,
+                data->apex,
                 coarser,
                 coarsening,
                 is_last ? std::numeric_limits<std::size_t>::max() : most_references,

@@ -19,8 +19,8 @@ constexpr std::int32_t never = std::numeric_limits<std::int32_t>::max();
 /// triangles would be listed again and again.
 constexpr double worthwhile_growth = 2.5;
 
-/// Depths of a list are below this and what planes add to it.
-constexpr std::int32_t greatest_depth = 16383;
+/// Depths of a list are within this, and what planes add to it.
+constexpr std::int32_t greatest_depth = 24000;
 
 std::size_t level_of(int shift) {
     return static_cast<std::size_t>((top_shift - shift) / split_bits);
@@ -35,6 +35,8 @@ Cell CellBuilder::build(std::span<const std::uint32_t> pieces, const Window& win
         const Piece& piece = pieces_[index];
         const Footprint place = footprint(piece, window);
         if (place.least_u > place.greatest_u) continue;
+        const EdgeRows edges = edges_.rows(piece, place, window);
+        if (edges.is_missed) continue;
         double least = place.least_key;
         double greatest = place.greatest_key;
         if (is_radial_) {
@@ -47,6 +49,7 @@ Cell CellBuilder::build(std::span<const std::uint32_t> pieces, const Window& win
              plane_of(piece, place, window),
              std::max(depth_units(map_, least) - 1, 0),
              depth_units(map_, greatest) + 1,
+             edges,
              index,
              piece.prim,
              false}
@@ -63,7 +66,7 @@ Cell CellBuilder::build(std::span<const std::uint32_t> pieces, const Window& win
     if (references.size() > params_.leaf_size && shift > place_bits &&
         split(references, window, shift, cell))
         return cell;
-    add_list(references, window, shift, cell);
+    add_list(references, window, cell);
     return cell;
 }
 
@@ -163,27 +166,28 @@ void CellBuilder::merge_parts(std::vector<Reference>& references) const {
         place.least_v = std::min(place.least_v, reference.place.least_v);
         place.greatest_v = std::max(place.greatest_v, reference.place.greatest_v);
         other->least = std::min(other->least, reference.least);
+        other->greatest = std::max(other->greatest, reference.greatest);
+        if (pieces_[other->piece].margin < pieces_[reference.piece].margin) {
+            other->edges = reference.edges;
+            other->piece = reference.piece;
+        }
         other->is_merged = true;
     }
     references.resize(kept);
 }
 
-void CellBuilder::add_list(
-    std::vector<Reference>& references,
-    const Window& window,
-    int shift,
-    Cell& cell
-) {
+void CellBuilder::add_list(std::vector<Reference>& references, const Window& window, Cell& cell) {
     if (is_radial_) merge_parts(references);
     const std::size_t count = references.size();
     if (count > ListHead::most_references) throw Error("pencil grid: too many triangles in a cell");
     std::sort(references.begin(), references.end(), [](const Reference& a, const Reference& b) {
         return std::tie(a.least, a.prim) < std::tie(b.least, b.prim);
     });
-    const std::int32_t base = references.front().least;
+    const std::int32_t nearest = references.front().least;
     int depth_shift = 0;
-    while (((references.back().least - base) >> depth_shift) > greatest_depth)
+    while (((references.back().least - nearest) >> depth_shift) > 2 * greatest_depth)
         ++depth_shift;
+    const std::int32_t base = nearest + (greatest_depth << depth_shift);
 
     ++statistics_.leaves;
     statistics_.references += count;
@@ -197,10 +201,6 @@ void CellBuilder::add_list(
     std::byte* to = lists_.data() + at;
     std::memcpy(to, &head, sizeof head);
     to += sizeof head;
-    const int places = shift - place_bits;
-    const auto place = [&](std::int32_t value) {
-        return static_cast<std::byte>((value >> places) ^ 0x80);
-    };
     for (std::size_t first = 0; first < count; first += chunk_size) {
         if (first > 0) {
             const auto least =
@@ -212,19 +212,47 @@ void CellBuilder::add_list(
         const std::size_t stride = padded(size);
         for (std::size_t i = 0; i < size; ++i) {
             const Reference& reference = references[first + i];
-            const Footprint& bounds = reference.place;
-            to[i] = place(bounds.least_u - window.first_u);
-            to[stride + i] = place(bounds.greatest_u - window.first_u);
-            to[2 * stride + i] = place(bounds.least_v - window.first_v);
-            to[3 * stride + i] = place(bounds.greatest_v - window.first_v);
-            const LinearDepth depth = linear_depth(reference, window, base, depth_shift);
-            std::memcpy(to + 4 * stride + 2 * i, &depth.slope_u, 2);
-            std::memcpy(to + 6 * stride + 2 * i, &depth.slope_v, 2);
-            std::memcpy(to + 8 * stride + 2 * i, &depth.depth, 2);
-            std::memcpy(to + 10 * stride + 4 * i, &reference.prim, sizeof(PrimId));
+            const DepthRows depths = depth_rows(reference, window, base, depth_shift);
+            const auto put = [&](std::size_t row, std::int16_t value) {
+                std::memcpy(to + 2 * (row * stride + i), &value, sizeof value);
+            };
+            for (std::size_t row = 0; row < 9; ++row)
+                put(row, reference.edges.values[row]);
+            for (std::size_t row = 0; row < 4; ++row)
+                put(depth_u + row, depths[row]);
+            std::memcpy(
+                to + 2 * list_rows * stride + sizeof(PrimId) * i, &reference.prim, sizeof(PrimId)
+            );
         }
         to += chunk_bytes(size);
     }
+}
+
+/// How far, in units, the depth -1 / key rises above its tangent in the middle of the bounds, whose
+/// slopes are `scale` times those of the key. It is convex, so at a corner.
+double CellBuilder::bulge(
+    const KeyPlane& plane,
+    const Footprint& bounds,
+    std::int32_t margin,
+    double scale
+) const {
+    const double half_u = 0.5 * (bounds.greatest_u + 1 - bounds.least_u) + margin + 3;
+    const double half_v = 0.5 * (bounds.greatest_v + 1 - bounds.least_v) + margin + 3;
+    const double middle = plane.at(
+        0.5 * (bounds.least_u + bounds.greatest_u + 1),
+        0.5 * (bounds.least_v + bounds.greatest_v + 1)
+    );
+    double most = 0;
+    for (const double to_u : {-half_u, half_u})
+        for (const double to_v : {-half_v, half_v}) {
+            const double rise = plane.slope_u * to_u + plane.slope_v * to_v;
+            const double key = middle + rise;
+            if (!(key < 0.25 * middle)) return std::numeric_limits<double>::infinity();
+            const double z = -1 / key;
+            const double depth = (z + 1 / middle) * map_.depth_scale;
+            most = std::max(most, depth - rise * scale + 0x1p-18 * z * map_.depth_scale);
+        }
+    return most;
 }
 
 /// The plane of a parallel piece; of a radial one, whose depth -1 / key is a convex function of the
@@ -250,9 +278,13 @@ CellBuilder::plane_of(const Piece& piece, const Footprint& bounds, const Window&
         depth_units_of(map_, middle) - error,
         plane->slope_u * scale * side,
         plane->slope_v * scale * side,
+        0,
         true
     };
-    tangent.middle -= (std::abs(tangent.slope_u) + std::abs(tangent.slope_v)) * 0x1p-20;
+    const double rounding = (std::abs(tangent.slope_u) + std::abs(tangent.slope_v)) * 0x1p-20;
+    tangent.middle -= rounding;
+    tangent.above = 2 * (error + rounding);
+    if (is_radial_) tangent.above += bulge(*plane, bounds, piece.margin, scale);
     tangent.is_known = std::abs(tangent.middle) < 0x1p29;
     return tangent;
 }
@@ -333,42 +365,52 @@ void CellBuilder::set_near(
     cell.shift = static_cast<std::uint16_t>(shift);
 }
 
-CellBuilder::LinearDepth CellBuilder::linear_depth(
+CellBuilder::DepthRows CellBuilder::depth_rows(
     const Reference& reference,
     const Window& window,
     std::int32_t base,
     int depth_shift
 ) const {
-    const auto flat = static_cast<std::int16_t>((reference.least - base) >> depth_shift);
-    const LinearDepth constant{0, 0, static_cast<std::uint16_t>(flat)};
+    const double unit = std::ldexp(1.0, depth_shift);
+    const double flat = (reference.least - base) >> depth_shift;
+    const double greatest = std::ceil((reference.greatest - base) / unit) + 1;
+    const bool is_endless = pieces_[reference.piece].reaches_apex;
+    const auto rows = [&](double slope_u, double slope_v, double start, double thick) {
+        return DepthRows{
+            static_cast<std::int16_t>(slope_u),
+            static_cast<std::int16_t>(slope_v),
+            // Modulo 2^16: right again where the triangle is.
+            static_cast<std::int16_t>(static_cast<std::int32_t>(start)),
+            is_endless ? endless : static_cast<std::int16_t>(std::min(thick, double{endless}))
+        };
+    };
+    const DepthRows constant = rows(0, 0, flat, greatest - flat);
     // The plane of one snapped part says nothing sure of the others.
     if (!reference.plane.is_known || reference.is_merged) return constant;
-    const double unit = static_cast<double>(std::int64_t{1} << depth_shift);
-    const double slope_u = reference.plane.slope_u / unit;
-    const double slope_v = reference.plane.slope_v / unit;
+    // Over half a cell, as places count.
+    const double slope_u = reference.plane.slope_u / (2 * unit);
+    const double slope_v = reference.plane.slope_v / (2 * unit);
     const double whole_u = std::nearbyint(slope_u);
     const double whole_v = std::nearbyint(slope_v);
     if (!(std::abs(whole_u) < 32000 && std::abs(whole_v) < 32000)) return constant;
     const Span span(reference.place, window, pieces_[reference.piece].margin);
-    // Products are rounded, to half a depth each, and so is the start.
-    constexpr double rounding = 2;
-    const double slack = (std::abs(whole_u) + std::abs(whole_v)) * span.off +
-                         std::abs(slope_u - whole_u) * span.half_u +
-                         std::abs(slope_v - whole_v) * span.half_v + rounding;
+    // Two products are rounded, to half a depth each.
+    constexpr double rounding = 1;
+    const double slack = 2 * ((std::abs(whole_u) + std::abs(whole_v)) * span.off +
+                              std::abs(slope_u - whole_u) * span.half_u +
+                              std::abs(slope_v - whole_v) * span.half_v) +
+                         rounding;
     const double at_middle = (reference.plane.middle - base) / unit - slack;
     // A plane that leaves the numbers, or says less than the least depth, is of no use.
     if (!(at_middle > flat)) return constant;
-    const double lowest =
-        at_middle - std::abs(whole_u) * span.half_u - std::abs(whole_v) * span.half_v - rounding;
-    if (!(lowest > -32000 && at_middle < 32000)) return constant;
-    const auto start =
-        static_cast<std::int32_t>(std::floor(at_middle - whole_u * span.at_u - whole_v * span.at_v)
-        );
-    return {
-        static_cast<std::int16_t>(whole_u),
-        static_cast<std::int16_t>(whole_v),
-        static_cast<std::uint16_t>(start)
-    };
+    const double change =
+        2 * (std::abs(whole_u) * span.half_u + std::abs(whole_v) * span.half_v) + rounding;
+    const double lowest = at_middle - change;
+    if (!(lowest > -32000 && at_middle + change < 32000)) return constant;
+    const double start =
+        std::floor(at_middle - whole_u * (2 * span.at_u - 1) - whole_v * (2 * span.at_v - 1));
+    const double behind = std::ceil(reference.plane.above / unit + 2 * slack + rounding) + 1;
+    return rows(whole_u, whole_v, start, std::min(behind, greatest - std::floor(lowest)));
 }
 
 std::size_t CellBuilder::grow(std::size_t bytes) {

@@ -1,6 +1,7 @@
 // From the pieces that touch a cell to its list, or to its sixteen children.
 #pragma once
 
+#include "pencil/edge_lines.hpp"
 #include "pencil/footprint.hpp"
 #include "pencil/grid_data.hpp"
 #include "pencil/piece.hpp"
@@ -23,9 +24,10 @@ public:
         const FaceMap& map,
         bool is_radial,
         std::span<const Piece> pieces,
+        const EdgeLines& edges,
         const PencilGridParams& params
     )
-        : map_(map), is_radial_(is_radial), pieces_(pieces), params_(params) {}
+        : map_(map), is_radial_(is_radial), pieces_(pieces), edges_(edges), params_(params) {}
 
     /// The top cell of the window, from all pieces that may touch it, in any order.
     [[nodiscard]] Cell build(std::span<const std::uint32_t> pieces, const Window& window) {
@@ -45,6 +47,7 @@ private:
         double middle = 0;  ///< depth at the middle of the bounds
         double slope_u = 0; ///< over the cell
         double slope_v = 0;
+        double above = 0; ///< the piece is nowhere farther behind the plane
         bool is_known = false;
     };
 
@@ -53,37 +56,35 @@ private:
         Plane plane;
         std::int32_t least;    ///< depth, in units
         std::int32_t greatest; ///< depth, in units
+        EdgeRows edges;
         std::uint32_t piece;
         PrimId prim;
         bool is_merged; ///< whether it stands for several pieces of the triangle
     };
 
-    /// A reference's depths as a list has them.
-    struct LinearDepth {
-        std::int16_t slope_u, slope_v;
-        std::uint16_t depth;
-    };
+    /// A reference's depths as a list has them: rows depth_u, depth_v, depth_at, thickness.
+    using DepthRows = std::array<std::int16_t, 4>;
 
     Cell build(std::span<const std::uint32_t> pieces, const Window& window, int shift);
     [[nodiscard]] Plane
     plane_of(const Piece& piece, const Footprint& bounds, const Window& window) const;
+    [[nodiscard]] double
+    bulge(const KeyPlane& plane, const Footprint& bounds, std::int32_t margin, double scale) const;
     void set_near(Cell& cell, const std::vector<Reference>& references, const Window& window) const;
-    [[nodiscard]] LinearDepth linear_depth(
-        const Reference& reference,
-        const Window& window,
-        std::int32_t base,
-        int depth_shift
-    ) const;
+    [[nodiscard]] DepthRows
+    depth_rows(const Reference& reference, const Window& window, std::int32_t base, int depth_shift)
+        const;
     [[nodiscard]] std::int32_t cull(std::vector<Reference>& references);
     [[nodiscard]] bool
     split(const std::vector<Reference>& references, const Window& window, int shift, Cell& cell);
-    void add_list(std::vector<Reference>& references, const Window& window, int shift, Cell& cell);
+    void add_list(std::vector<Reference>& references, const Window& window, Cell& cell);
     void merge_parts(std::vector<Reference>& references) const;
     [[nodiscard]] std::size_t grow(std::size_t bytes);
 
     const FaceMap& map_;
     bool is_radial_;
     std::span<const Piece> pieces_;
+    const EdgeLines& edges_;
     const PencilGridParams& params_;
     std::vector<std::byte> lists_;
     std::vector<std::size_t> splits_;                  ///< where children are

@@ -1,4 +1,4 @@
-// Where a point lies in a face: the one function that queries and the build share.
+// Where a point lies in a face.
 #pragma once
 
 #include "pencil/grid_data.hpp"
@@ -8,30 +8,34 @@
 
 namespace raywise::pencil_detail {
 
-/// Units across and depth of a point, unclamped.
-struct Place {
-    double u;
-    double v;
-    double z; ///< depth in scene units
-};
-
-inline Place parallel_place(const FaceMap& map, double x_u, double x_v, double x_axis) {
-    return {
-        x_u * map.scale_u - x_axis * map.slope_u - map.offset_u,
-        x_v * map.scale_v - x_axis * map.slope_v - map.offset_v,
-        x_axis * map.sign,
+/// Sets what queries use of a map whose other members are set.
+inline void set_lanes(FaceMap& map, bool is_radial) {
+    const auto column = [&](int axis) -> FaceMap::Lanes& {
+        return map.columns[static_cast<std::size_t>(axis)];
     };
-}
-
-/// For a point as seen from the apex, or a direction; z > 0.
-inline Place radial_place(const FaceMap& map, double x_u, double x_v, double x_axis) {
-    const double z = x_axis * map.sign;
-    const double inverse = 1 / z;
-    return {
-        x_u * inverse * map.scale_u - map.offset_u,
-        x_v * inverse * map.scale_v - map.offset_v,
-        z,
+    const double depth = map.sign * map.depth_scale;
+    map.columns = {};
+    column(map.axis) = {-map.slope_u, -map.slope_v, depth, depth};
+    column(map.axis_u)[0] = map.scale_u;
+    column(map.axis_v)[1] = map.scale_v;
+    if (is_radial) column(map.axis) = {0, 0, depth, depth};
+    map.columns[3] = {
+        -map.offset_u,
+        -map.offset_v,
+        map.depth_offset + map.depth_slack,
+        map.depth_offset - map.depth_slack
     };
+    constexpr double rounding_of_t = 0x1p-21;
+    const double speed =
+        is_radial ? map.depth_scale : static_cast<double>(map.speed) * map.depth_scale;
+    const double less = speed * (1 - rounding_of_t);
+    const double more = speed * (1 + rounding_of_t);
+    map.toward = {0, 0, -less, -more};
+    map.away = {0, 0, more, less};
+    const double near = map.depth_offset - map.reach * map.depth_scale;
+    const double far = map.depth_offset + map.reach * map.depth_scale;
+    map.least = {0, 0, near, near};
+    map.limit = {map.size_u, map.size_v, far, far};
 }
 
 /// Unclamped. Monotone in z.

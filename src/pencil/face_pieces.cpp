@@ -106,6 +106,7 @@ std::vector<RawPiece> radial_pieces(
         Polygon polygon;
         bool is_outside = true;
         bool is_inside = true;
+        bool reaches_apex = false;
         std::array<bool, 4> beyond{true, true, true, true};
         for (std::size_t i = 0; i < 3; ++i) {
             const Vec3d p = vertex(records, id, i) - eye;
@@ -113,6 +114,7 @@ std::vector<RawPiece> radial_pieces(
             const double limit = q.z * edge;
             polygon.add(q);
             is_outside = is_outside && q.z < nearest;
+            reaches_apex = reaches_apex || q.z < nearest;
             is_inside =
                 is_inside && q.z >= nearest && std::abs(q.x) <= limit && std::abs(q.y) <= limit;
             beyond[0] = beyond[0] && q.x > limit;
@@ -146,6 +148,7 @@ std::vector<RawPiece> radial_pieces(
             piece.margin = static_cast<float>(0x1p-22 * reach / least);
             piece.prim = id;
             piece.is_part = polygon.count > 3;
+            piece.reaches_apex = reaches_apex;
             pieces.push_back(piece);
         }
     });

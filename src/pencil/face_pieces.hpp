@@ -29,6 +29,7 @@ struct RawPiece {
     float margin; ///< radial: how far, as a slope, a shadow ray may stray at the least depth
     PrimId prim;
     bool is_part;
+    bool reaches_apex; ///< whether the triangle goes on nearer to the apex than any piece
 };
 
 /// The pieces of the cube face on the side `sign` of `axis`, beyond `nearest` from the apex; rays

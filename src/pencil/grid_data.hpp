@@ -49,13 +49,10 @@ static_assert(sizeof(Cell) == 16);
 
 /// The head of a list; chunks of 32 references follow, the last one shorter, a multiple of 4.
 /// Before every chunk but the first stand its least depth and two bytes of nothing. A chunk of n
-/// is: n bytes each of least and greatest u, least and greatest v, in 1/256 of the cell less 128,
-/// so that signed comparisons order them; n 16-bit numbers each of slopes along u and v and of
-/// depths; n ids. Depths count 2^shift units from base; at the place (u, v), in 2^-15 of the cell,
-/// reference i is no nearer than depth[i] + slope_u[i] * u + slope_v[i] * v, products times 2^-15
-/// and rounded, sums modulo 2^16. References ascend by least depth.
+/// references is `list_rows` rows of n 16-bit numbers, see `Row`, and n ids. Depths count 2^shift
+/// units from base; references ascend by least depth.
 struct ListHead {
-    std::int32_t base;  ///< least depth of all, in units
+    std::int32_t base;  ///< units
     std::uint32_t bits; ///< references, shift << 26, is_culled << 31
 
     static constexpr std::size_t most_references = (1U << 26U) - 1;
@@ -70,6 +67,29 @@ struct ListHead {
 };
 static_assert(sizeof(ListHead) == 8);
 
+/// The rows of a chunk. A place (u, v) counts half cells from the middle of its cell, in 2^-15.
+/// Products with a place are times 2^-15, rounded; sums of edges saturate, sums of depths are
+/// modulo 2^16.
+///
+/// Edge i of a reference's triangle has at the place the value e_i = edge_at[i] + edge_u[i] * u +
+/// edge_v[i] * v. A ray of the cell that meets the triangle has every e_i > -edge_doubt; one with
+/// every e_i >= edge_doubt passes through its inside. The depth of a ray that meets it is nowhere
+/// less than d = depth_at + depth_u * u + depth_v * v, nor more than d + thickness, unless that is
+/// `endless`.
+enum Row : std::size_t {
+    edge_u = 0,  ///< and 3, 6
+    edge_v = 1,  ///< and 4, 7
+    edge_at = 2, ///< and 5, 8
+    depth_u = 9,
+    depth_v = 10,
+    depth_at = 11,
+    thickness = 12,
+    list_rows = 13
+};
+
+inline constexpr int edge_doubt = 8;
+inline constexpr std::int16_t endless = 32767;
+
 inline constexpr std::size_t chunk_size = 32;
 
 [[nodiscard]] constexpr std::size_t padded(std::size_t count) {
@@ -78,7 +98,7 @@ inline constexpr std::size_t chunk_size = 32;
 
 /// Bytes from one chunk of `count` references to the next.
 [[nodiscard]] constexpr std::size_t chunk_bytes(std::size_t count) {
-    return 14 * padded(count);
+    return (2 * list_rows + sizeof(PrimId)) * padded(count);
 }
 
 /// Bytes before every chunk but the first.
@@ -108,6 +128,15 @@ struct FaceMap {
     float speed = 0;                ///< parallel: |direction z|
     float whole_t = 1;      ///< a ray toward the emitter with such a t_max passes all geometry
     double depth_slack = 1; ///< units that a rounded t may be off, beside a share of it
+
+    // The same map for queries, four numbers at a time: u, v, and units of depth twice, less and
+    // more than what they are off. They are the sum of the columns for x, y, z and 1, each times
+    // its coordinate; radial: where the first three are divided by z for u and v. A length of ray
+    // times `toward`, or `away` from the emitter, is added.
+    using Lanes = std::array<double, 4>;
+    alignas(32) std::array<Lanes, 4> columns{};
+    Lanes toward{}, away{};
+    Lanes least{}, limit{}; ///< before a length is added; others are outside or too far away
 };
 
 struct Face {
@@ -138,8 +167,9 @@ struct PencilGrid::Data {
     const std::byte* lists = nullptr;           ///< lists and split cells
     const float* records = nullptr;
     std::vector<PrimId> near; ///< radial: triangles at the apex
+    bool has_near = false;    ///< whether there are such
     Vec3d apex{};
-    float doubt = 0; ///< see Line::doubt
+    bool is_tame = false; ///< whether coordinates are small enough for `sharp_hit`
 
     std::optional<LargeBuffer<std::byte>> memory; ///< top cells of all faces, then lists
     std::optional<LargeBuffer<float>> record_memory;

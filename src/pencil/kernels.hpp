@@ -26,7 +26,7 @@ using Grid = PencilGrid::Data;
 
 struct Kernels {
     std::string_view name;
-    Verdict (*occluded)(const Grid&, Vec3 point, float t_min, PrimId excluded);
+    Verdict (*occluded)(const Grid&, const Vec3& point, float t_min, PrimId excluded);
     Verdict (*any_hit)(const Grid&, const Ray&);
     Verdict (*any_hit_counted)(const Grid&, const Ray&, PencilGridCounts&);
     Verdict (*closest_hit)(const Grid&, const Ray&, Hit&);

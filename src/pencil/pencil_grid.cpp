@@ -39,7 +39,7 @@ Verdict PencilGrid::any_hit(const Ray& ray, PencilGridCounts& counts) const {
     return data_->kernels->any_hit_counted(*data_, ray, counts);
 }
 
-Verdict PencilGrid::occluded(Vec3 point, float t_min, PrimId excluded) const {
+Verdict PencilGrid::occluded(const Vec3& point, float t_min, PrimId excluded) const {
     return data_->kernels->occluded(*data_, point, t_min, excluded);
 }
 

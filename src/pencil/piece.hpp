@@ -20,7 +20,8 @@ struct Piece {
     std::array<float, 3> key; ///< linear across the face, ascending with depth: z, or -1 / z
     std::int32_t margin;
     PrimId prim;
-    bool is_part; ///< whether other pieces have the same triangle
+    bool is_part;      ///< whether other pieces have the same triangle
+    bool reaches_apex; ///< whether a ray that passes through the triangle may miss all its pieces
 
     [[nodiscard]] std::int32_t least_u() const { return std::min({u[0], u[1], u[2]}) - margin; }
 

@@ -56,7 +56,7 @@ public:
 
     /// any_hit(pencil().shadow_ray(point, t_min, excluded)), for a t_min >= 0; a miss where that is
     /// not valid. The fastest way to ask.
-    [[nodiscard]] Verdict occluded(Vec3 point, float t_min = 0, PrimId excluded = no_prim) const;
+    [[nodiscard]] Verdict occluded(const Vec3& point, float t_min = 0, PrimId excluded = no_prim) const;
 
     /// The closest hit in [t_min, t_max], written to `hit` when there is one. `ray` must be
     /// covered.

@@ -1,0 +1,212 @@
+#include "pencil/edge_lines.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdlib>
+
+namespace raywise::pencil_detail {
+
+namespace {
+
+/// f(X, Y) = at + u X + v Y, for places (X, Y) in half cells from the middle, is within `error` of
+/// a multiple of the distance from an edge.
+struct Line {
+    double u, v, at;
+    double error;
+
+    [[nodiscard]] Line operator-() const { return {-u, -v, -at, error}; }
+};
+
+/// The lines of the three edges, positive inside, when the triangle's turn is sure.
+struct Lines {
+    std::array<Line, 3> edges;
+    bool is_sure;
+};
+
+double greatest(const Vec3d& v) {
+    return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+}
+
+/// Places in units from the middle of the window. They are sums of four products, off by the
+/// roundings of the largest.
+Lines parallel_lines(const FaceMap& map, const std::array<Vec3d, 3>& p, const Window& window) {
+    const double half = window.side * 0.5;
+    std::array<double, 3> x{}, y{};
+    double largest = half;
+    double size = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const auto place = [&](std::size_t lane, double middle) {
+            double sum = map.columns[3][lane];
+            largest = std::max(largest, std::abs(sum));
+            for (int axis = 0; axis < 3; ++axis) {
+                const double term = map.columns[static_cast<std::size_t>(axis)][lane] * p[i][axis];
+                largest = std::max(largest, std::abs(term));
+                sum += term;
+            }
+            return sum - middle;
+        };
+        x[i] = place(0, window.first_u + half);
+        y[i] = place(1, window.first_v + half);
+        size = std::max({size, std::abs(x[i]), std::abs(y[i])});
+    }
+    // Of a place; and of an edge's direction times what it is multiplied with, twice.
+    const double off = 0x1p-49 * largest;
+    const double error = 16 * (off + 0x1p-50 * size) * (size + half);
+    Lines lines{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t j = i == 2 ? 0 : i + 1;
+        const double along_x = x[j] - x[i];
+        const double along_y = y[j] - y[i];
+        lines.edges[i] = {-along_y * half, along_x * half, along_y * x[i] - along_x * y[i], error};
+    }
+    const double area = (x[1] - x[0]) * (y[2] - y[0]) - (y[1] - y[0]) * (x[2] - x[0]);
+    lines.is_sure = std::abs(area) > error;
+    if (area < 0)
+        for (Line& line : lines.edges)
+            line = -line;
+    return lines;
+}
+
+/// The planes through the apex and an edge, cut by the plane z = 1 of the face. So they are right
+/// for triangles that reach behind the apex, too.
+Lines radial_lines(
+    const FaceMap& map,
+    const std::array<Vec3d, 3>& p,
+    const Vec3d& apex,
+    const Window& window
+) {
+    const double half = window.side * 0.5;
+    const double x = (window.first_u + half + map.offset_u) / map.scale_u;
+    const double y = (window.first_v + half + map.offset_v) / map.scale_v;
+    std::array<Vec3d, 3> q{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Vec3d seen = p[i] - apex;
+        q[i] = {seen[map.axis_u], seen[map.axis_v], seen[map.axis] * map.sign};
+    }
+    Lines lines{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Vec3d& a = q[i];
+        const Vec3d& b = q[i == 2 ? 0 : i + 1];
+        const Vec3d n = cross(a, b - a);
+        lines.edges[i] = {
+            n.x * (half / map.scale_u),
+            n.y * (half / map.scale_v),
+            n.x * x + n.y * y + n.z,
+            0x1p-47 * greatest(a) * greatest(b)
+        };
+    }
+    const double turn = dot(cross(q[0], q[1] - q[0]), q[2] - q[0]);
+    lines.is_sure = std::abs(turn) > 0x1p-47 * greatest(q[0]) * greatest(q[1]) * greatest(q[2]);
+    if (turn < 0)
+        for (Line& line : lines.edges)
+            line = -line;
+    return lines;
+}
+
+/// The line in 16-bit numbers; returns the greatest value that it has in the cell.
+///
+/// Rounding the three numbers takes off at most 1/2 each, rounding the two products of a query as
+/// much: 5/2 in all. A factor is chosen that leaves at most 5 for what the place and the line are
+/// off: less than edge_doubt together.
+int put(const Line& line, double place_error, std::int16_t* row) {
+    constexpr double most = 16383;
+    const double steep = std::max(std::abs(line.u), std::abs(line.v));
+    const double change = std::abs(line.u) + std::abs(line.v);
+    const double factor = std::min(most / steep, 5 / (change * place_error + line.error));
+    if (!(factor < 0x1p200)) {
+        row[edge_u] = row[edge_v] = row[edge_at] = 0;
+        return 0;
+    }
+    const double at = factor * line.at;
+    // The whole cell is on one side.
+    if (std::abs(at) > 2 * most + 1) {
+        row[edge_u] = row[edge_v] = 0;
+        row[edge_at] = static_cast<std::int16_t>(at > 0 ? 32767 : -32767);
+        return row[edge_at];
+    }
+    row[edge_u] = static_cast<std::int16_t>(std::lrint(factor * line.u));
+    row[edge_v] = static_cast<std::int16_t>(std::lrint(factor * line.v));
+    row[edge_at] = static_cast<std::int16_t>(std::lrint(at));
+    return row[edge_at] + std::abs(row[edge_u]) + std::abs(row[edge_v]);
+}
+
+constexpr std::array<std::int16_t, 3> everywhere{0, 0, 32767};
+
+/// For a triangle whose turn is in doubt: the strip along its longest edge, whose two sides cannot
+/// both be surely inside.
+EdgeRows strip(const Lines& lines, double place_error) {
+    const auto steepness = [](const Line& line) { return std::abs(line.u) + std::abs(line.v); };
+    const Line& longest = *std::max_element(
+        lines.edges.begin(),
+        lines.edges.end(),
+        [&](const Line& a, const Line& b) { return steepness(a) < steepness(b); }
+    );
+    EdgeRows rows{};
+    (void)put(longest, place_error, rows.values.data());
+    for (std::size_t k = 0; k < 3; ++k) {
+        rows.values[3 + k] = static_cast<std::int16_t>(-rows.values[k]);
+        rows.values[6 + k] = everywhere[k];
+    }
+    return rows;
+}
+
+/// Three lines around the bounds. With f = 8191 a half cell, they are u + v >= least_u + least_v,
+/// u <= greatest_u and v <= greatest_v, each 7 - 3 outward for the roundings. Their values add up
+/// to at most 27 - 12 + 9 where the bounds are small enough, and so cannot be surely inside.
+EdgeRows box(const Footprint& bounds, const Window& window) {
+    constexpr double factor = 8191;
+    constexpr double outward = edge_doubt - 1 - 3;
+    const double half = window.side * 0.5;
+    const auto along = [&](std::int32_t unit, std::int32_t first) {
+        return factor * ((unit - first) / half - 1);
+    };
+    const double least =
+        along(bounds.least_u, window.first_u) + along(bounds.least_v, window.first_v);
+    const double greatest_u = along(bounds.greatest_u, window.first_u);
+    const double greatest_v = along(bounds.greatest_v, window.first_v);
+    const auto number = [](double x) { return static_cast<std::int16_t>(std::lrint(x)); };
+    const auto slope = static_cast<std::int16_t>(factor);
+    return {
+        {slope,
+         slope,
+         number(-least - outward),
+         static_cast<std::int16_t>(-slope),
+         0,
+         number(greatest_u - outward),
+         0,
+         static_cast<std::int16_t>(-slope),
+         number(greatest_v - outward)},
+        false
+    };
+}
+
+bool is_small(const Footprint& bounds, const Window& window) {
+    const double wide = bounds.greatest_u - bounds.least_u;
+    const double high = bounds.greatest_v - bounds.least_v;
+    return (wide + high) * 8191 <= 27 * 0.5 * window.side;
+}
+
+} // namespace
+
+EdgeRows EdgeLines::rows(const Piece& piece, const Footprint& bounds, const Window& window) const {
+    const float* r = records_ + to_index(piece.prim) * record_floats;
+    std::array<Vec3d, 3> vertices{};
+    for (std::size_t i = 0; i < 3; ++i)
+        vertices[i] = to_double(Vec3{r[i], r[3 + i], r[6 + i]});
+    const Lines lines = is_radial_ ? radial_lines(map_, vertices, apex_, window)
+                                   : parallel_lines(map_, vertices, window);
+    const double place_error = piece.margin / (window.side * 0.5);
+    // The bounds of a part say nothing of the other parts.
+    if (!lines.is_sure)
+        return !piece.is_part && is_small(bounds, window) ? box(bounds, window)
+                                                          : strip(lines, place_error);
+    EdgeRows rows{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const int most = put(lines.edges[i], place_error, rows.values.data() + 3 * i);
+        rows.is_missed = rows.is_missed || most <= -edge_doubt;
+    }
+    return rows;
+}
+
+} // namespace raywise::pencil_detail

@@ -1,0 +1,352 @@
+// Queries of a pencil grid: compiled once for each instruction set.
+#include "pencil/grid_data.hpp"
+#include "pencil/kernels.hpp"
+#include "pencil/query/counts.hpp"
+#include "pencil/query/sharp_filter.hpp"
+
+#include <raywise/geometry/ray_triangle.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "pencil/query/grid_query.cpp"
+// The order matters: foreach_target.h includes this file anew for every target.
+// clang-format off
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+#include "pencil/query/locate.inl.hpp"
+#include "pencil/query/list.inl.hpp"
+#include "pencil/query/closest.inl.hpp"
+// clang-format on
+
+HWY_BEFORE_NAMESPACE();
+
+namespace raywise::pencil_detail::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// One of the triangles that the ray is not sure to hit, nor to miss.
+template <class RayOf, class Count>
+HWY_NOINLINE bool
+is_hit_after_all(const Grid& grid, RayOf ray_of, Walk way, std::uint32_t bits, Count count) {
+    const Ray ray = ray_of();
+    for (; bits != 0; bits &= bits - 1)
+        if (is_hit(grid, ray, way.id(bits), count)) return true;
+    return false;
+}
+
+/// any_hit in a leaf's list. `ray()` is made only where the list leaves a doubt.
+template <class RayOf, class Count>
+HWY_INLINE Verdict look_through(
+    const Grid& grid,
+    RayOf ray,
+    PrimId excluded,
+    const Spot& spot,
+    const Leaf& leaf,
+    Count count
+) {
+    Walk way = walk(grid, leaf, spot);
+    count.list(way.left);
+    do {
+        const Marks marks = way.marks();
+        for (std::uint32_t sure = marks.sure; sure != 0; sure &= sure - 1)
+            if (excluded == no_prim || way.id(sure) != excluded) return Verdict::hit;
+        if (marks.possible != 0) [[unlikely]]
+            if (is_hit_after_all(grid, ray, way, marks.possible, count)) return Verdict::hit;
+    } while (way.advance());
+    return is_complete(spot.deepest(), leaf) ? Verdict::miss : Verdict::unknown;
+}
+
+/// What is not in cells or too far away for them; nothing for all others.
+template <class RayOf, class Count>
+HWY_NOINLINE std::optional<Verdict>
+any_hit_apart(const Grid& grid, RayOf ray, Where where, Count count) {
+    if (where == Where::unknown) return is_valid(ray()) ? Verdict::unknown : Verdict::miss;
+    const bool is_hit_near = std::any_of(grid.near.begin(), grid.near.end(), [&](PrimId id) {
+        return is_hit(grid, ray(), id, count);
+    });
+    if (is_hit_near) return Verdict::hit;
+    return std::nullopt;
+}
+
+template <Heading heading, class RayOf, class Count>
+HWY_INLINE Verdict
+any_hit_along(const Grid& grid, const Segment& segment, RayOf ray, PrimId excluded, Count count) {
+    count.query();
+    Spot spot{};
+    const Where where = locate<heading>(grid, segment, spot);
+    if (where == Where::unknown || grid.has_near) [[unlikely]]
+        if (const auto verdict = any_hit_apart(grid, ray, where, count)) return *verdict;
+    if (where == Where::outside) return Verdict::miss;
+    const Leaf leaf = find_leaf<true>(grid, spot, count);
+    if (leaf.has_verdict) return leaf.verdict;
+    return look_through(grid, ray, excluded, spot, leaf, count);
+}
+
+template <Heading heading, class Count>
+HWY_INLINE Verdict any_hit_along(const Grid& grid, const Ray& ray, Count count) {
+    const auto itself = [at = &ray] { return *at; };
+    return any_hit_along<heading>(grid, segment_of(ray), itself, ray.excluded, count);
+}
+
+template <Heading heading, class Count>
+HWY_INLINE Verdict closest_hit_along(const Grid& grid, const Ray& ray, Hit& hit, Count count) {
+    count.query();
+    Spot spot{};
+    const Where where = locate<heading>(grid, segment_of(ray), spot);
+    if (where == Where::unknown) [[unlikely]]
+        return is_valid(ray) ? Verdict::unknown : Verdict::miss;
+    Closest<heading, Count> closest(grid, ray, count);
+    for (const PrimId id : grid.near)
+        closest.add(id);
+    if (where == Where::inside) {
+        const Leaf leaf = find_leaf<false>(grid, spot, count);
+        if (!leaf.has_verdict) {
+            Walk way = walk(grid, leaf, spot);
+            count.list(way.left);
+            do
+                closest.look(way);
+            while (way.advance());
+            if (!is_complete(way.deepest(spot), leaf)) return Verdict::unknown;
+        }
+    }
+    return closest.finish(hit) ? Verdict::hit : Verdict::miss;
+}
+
+template <Heading heading>
+Verdict all_hits_along(const Grid& grid, const Ray& ray, FunctionRef<void(const Hit&)> visit) {
+    Spot spot{};
+    const Where where = locate<heading>(grid, segment_of(ray), spot);
+    if (where == Where::unknown) return is_valid(ray) ? Verdict::unknown : Verdict::miss;
+    bool found = false;
+    const auto add = [&](PrimId id) HWY_ATTR {
+        if (id == ray.excluded) return;
+        if (const auto hit = decide(grid, ray, id, ray.t_max)) {
+            found = true;
+            visit(*hit);
+        }
+    };
+    for (const PrimId id : grid.near)
+        add(id);
+    if (where == Where::inside) {
+        const Leaf leaf = find_leaf<false>(grid, spot, NoCounts{});
+        if (!leaf.has_verdict) {
+            Walk way = walk(grid, leaf, spot);
+            do
+                for (std::uint32_t bits = way.marks().possible; bits != 0; bits &= bits - 1)
+                    if (const PrimId id = way.id(bits);
+                        std::find(grid.near.begin(), grid.near.end(), id) == grid.near.end())
+                        add(id);
+            while (way.advance());
+            if (!is_complete(spot.deepest(), leaf)) return Verdict::unknown;
+        }
+    }
+    return found ? Verdict::hit : Verdict::miss;
+}
+
+/// Of the pencil's shadow rays.
+HWY_INLINE float shadow_t_max(const Grid& grid) {
+    return grid.pencil.kind() == Pencil::Kind::parallel ? std::numeric_limits<float>::infinity()
+                                                        : 1.0F;
+}
+
+HWY_INLINE Heading heading_of(const Grid& grid, const Ray& ray) {
+    const bool is_away = grid.pencil.kind() == Pencil::Kind::parallel
+                             ? ray.direction == grid.pencil.direction()
+                             : ray.origin == grid.pencil.apex();
+    return is_away ? Heading::from_emitter : Heading::to_emitter;
+}
+
+Verdict Occluded(const Grid& grid, const Vec3& point, float t_min, PrimId excluded) {
+    const auto ray = [=, at = &grid, from = &point] {
+        return at->pencil.shadow_ray(*from, t_min, excluded);
+    };
+    return any_hit_along<Heading::to_emitter>(
+        grid, {point, point, t_min, shadow_t_max(grid)}, ray, excluded, NoCounts{}
+    );
+}
+
+template <class Count>
+HWY_INLINE Verdict any_hit_of(const Grid& grid, const Ray& ray, Count count) {
+    return heading_of(grid, ray) == Heading::to_emitter
+               ? any_hit_along<Heading::to_emitter>(grid, ray, count)
+               : any_hit_along<Heading::from_emitter>(grid, ray, count);
+}
+
+Verdict AnyHit(const Grid& grid, const Ray& ray) {
+    return any_hit_of(grid, ray, NoCounts{});
+}
+
+Verdict AnyHitCounted(const Grid& grid, const Ray& ray, PencilGridCounts& counts) {
+    return any_hit_of(grid, ray, Counts{&counts});
+}
+
+template <class Count>
+HWY_INLINE Verdict closest_hit_of(const Grid& grid, const Ray& ray, Hit& hit, Count count) {
+    return heading_of(grid, ray) == Heading::to_emitter
+               ? closest_hit_along<Heading::to_emitter>(grid, ray, hit, count)
+               : closest_hit_along<Heading::from_emitter>(grid, ray, hit, count);
+}
+
+Verdict ClosestHit(const Grid& grid, const Ray& ray, Hit& hit) {
+    return closest_hit_of(grid, ray, hit, NoCounts{});
+}
+
+Verdict ClosestHitCounted(const Grid& grid, const Ray& ray, Hit& hit, PencilGridCounts& counts) {
+    return closest_hit_of(grid, ray, hit, Counts{&counts});
+}
+
+Verdict AllHits(const Grid& grid, const Ray& ray, FunctionRef<void(const Hit&)> visit) {
+    return heading_of(grid, ray) == Heading::to_emitter
+               ? all_hits_along<Heading::to_emitter>(grid, ray, visit)
+               : all_hits_along<Heading::from_emitter>(grid, ray, visit);
+}
+
+/// Rays of a batch that are answered together: while one waits for memory, the others go on.
+constexpr std::size_t together = 16;
+
+/// any_hit for a few rays toward the emitter: `ray_at(i)`, i < count <= together.
+template <class RayAt>
+HWY_INLINE void
+any_hit_together(const Grid& grid, std::size_t count, const RayAt& ray_at, Verdict* verdicts) {
+    std::array<Spot, together> spots;
+    std::array<Leaf, together> leaves;
+    std::array<std::uint8_t, together> open{};
+
+    std::size_t left = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const Ray ray = ray_at(i);
+        const Where where = locate<Heading::to_emitter>(grid, segment_of(ray), spots[i]);
+        verdicts[i] = Verdict::miss;
+        if (where == Where::unknown && is_valid(ray)) verdicts[i] = Verdict::unknown;
+        if (where != Where::inside) continue;
+        open[left++] = static_cast<std::uint8_t>(i);
+        hwy::Prefetch(top_cell(spots[i]));
+    }
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < left; ++k) {
+        const std::size_t i = open[k];
+        leaves[i] = find_leaf<true>(grid, spots[i], NoCounts{});
+        verdicts[i] = leaves[i].verdict;
+        prefetch_list(grid, leaves[i]);
+        open[kept] = static_cast<std::uint8_t>(i);
+        kept += static_cast<std::size_t>(!leaves[i].has_verdict);
+    }
+    for (std::size_t k = 0; k < kept; ++k) {
+        const std::size_t i = open[k];
+        const Ray ray = ray_at(i);
+        verdicts[i] = look_through(
+            grid, [at = &ray] { return *at; }, ray.excluded, spots[i], leaves[i], NoCounts{}
+        );
+    }
+}
+
+void OccludedBatch(const Grid& grid, const PointBatch& batch, Verdict* verdicts) {
+    const auto ray_at = [&](std::size_t i) {
+        return grid.pencil.shadow_ray(
+            batch.points[i], batch.t_min, batch.excluded == nullptr ? no_prim : batch.excluded[i]
+        );
+    };
+    for (std::size_t first = 0; first < batch.count; first += together) {
+        const std::size_t count = std::min(together, batch.count - first);
+        if (!grid.has_near) {
+            any_hit_together(
+                grid,
+                count,
+                [&](std::size_t i) HWY_ATTR { return ray_at(first + i); },
+                verdicts + first
+            );
+            continue;
+        }
+        for (std::size_t i = first; i < first + count; ++i)
+            verdicts[i] = any_hit_along<Heading::to_emitter>(grid, ray_at(i), NoCounts{});
+    }
+}
+
+void AnyHitBatch(const Grid& grid, const Ray* rays, std::size_t batch_size, Verdict* verdicts) {
+    for (std::size_t first = 0; first < batch_size; first += together) {
+        const std::size_t count = std::min(together, batch_size - first);
+        bool are_shadows = !grid.has_near;
+        for (std::size_t i = first; i < first + count; ++i)
+            are_shadows = are_shadows && heading_of(grid, rays[i]) == Heading::to_emitter;
+        if (are_shadows) {
+            any_hit_together(
+                grid,
+                count,
+                [&](std::size_t i) HWY_ATTR { return rays[first + i]; },
+                verdicts + first
+            );
+            continue;
+        }
+        for (std::size_t i = first; i < first + count; ++i)
+            verdicts[i] = any_hit_of(grid, rays[i], NoCounts{});
+    }
+}
+
+const Kernels kernels{
+    hwy::TargetName(HWY_TARGET),
+    Occluded,
+    AnyHit,
+    AnyHitCounted,
+    ClosestHit,
+    ClosestHitCounted,
+    AllHits,
+    OccludedBatch,
+    AnyHitBatch
+};
+
+const Kernels* GetKernels() {
+    return &kernels;
+}
+
+} // namespace raywise::pencil_detail::HWY_NAMESPACE
+
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+
+namespace raywise::pencil_detail {
+
+HWY_EXPORT(GetKernels);
+
+namespace {
+
+std::vector<const Kernels*> collect_kernels() {
+    std::vector<const Kernels*> all;
+    for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+        hwy::SetSupportedTargetsForTest(target);
+        hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+        all.push_back(HWY_DYNAMIC_DISPATCH(GetKernels)());
+    }
+    hwy::SetSupportedTargetsForTest(0);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    return all;
+}
+
+} // namespace
+
+std::span<const Kernels* const> all_kernels() {
+    static const std::vector<const Kernels*> all = collect_kernels();
+    return all;
+}
+
+const Kernels& best_kernels() {
+    return *all_kernels().front();
+}
+
+std::optional<Hit> decide(const Grid& grid, const Ray& ray, PrimId id, float t_max) {
+    const float* r = grid.records + to_index(id) * record_floats;
+    const Triangle triangle{{r[0], r[3], r[6]}, {r[1], r[4], r[7]}, {r[2], r[5], r[8]}};
+    return ExactKernel::decide(ray, triangle, id, t_max);
+}
+
+} // namespace raywise::pencil_detail
+
+#endif

@@ -1,0 +1,249 @@
+// From a ray to its place in a face, and to its cell. Included once for every instruction set.
+#if defined(RAYWISE_PENCIL_QUERY_LOCATE) == defined(HWY_TARGET_TOGGLE)
+#ifdef RAYWISE_PENCIL_QUERY_LOCATE
+#undef RAYWISE_PENCIL_QUERY_LOCATE
+#else
+#define RAYWISE_PENCIL_QUERY_LOCATE
+#endif
+
+#include "pencil/face_map.hpp"
+#include "pencil/grid_data.hpp"
+#include "pencil/kernels.hpp"
+
+#include <hwy/highway.h>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+HWY_BEFORE_NAMESPACE();
+
+namespace raywise::pencil_detail::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Which way a ray of the pencil runs.
+enum class Heading : std::uint8_t { to_emitter, from_emitter };
+
+/// The place of a ray in a face, in units.
+struct Spot {
+    const Face* face;
+    std::array<std::int32_t, 4> units;
+
+    [[nodiscard]] HWY_INLINE std::int32_t u() const { return units[0]; }
+
+    [[nodiscard]] HWY_INLINE std::int32_t v() const { return units[1]; }
+
+    /// No hit is deeper.
+    [[nodiscard]] HWY_INLINE std::int32_t deepest() const { return units[2]; }
+
+    /// What is passed through and not deeper is hit; or `nothing_sure`.
+    [[nodiscard]] HWY_INLINE std::int32_t sure() const { return units[3]; }
+};
+
+constexpr std::int32_t nothing_sure = -(1 << 29);
+
+/// Of depths, in units.
+constexpr std::int32_t rounding = 4;
+
+constexpr FaceMap::Lanes depth_limit{0x1p30, 0x1p30, deepest, deepest};
+
+/// What is divided by z, and what is not. Depths begin at the origin, which is the apex for rays
+/// that come from there.
+constexpr FaceMap::Lanes divided{1, 1, 0, 0};
+template <Heading heading>
+constexpr FaceMap::Lanes undivided =
+    heading == Heading::to_emitter ? FaceMap::Lanes{0, 0, 1, 1} : FaceMap::Lanes{};
+
+enum class Where : std::uint8_t {
+    inside,
+    outside, ///< where nothing is
+    unknown, ///< too far away to say
+};
+
+/// The face of a direction from the apex, and how far it goes along its axis. Without branches:
+/// lamps look everywhere.
+HWY_INLINE std::size_t face_of(const Vec3d& seen, double& longest) {
+    const hn::CappedTag<double, 1> d;
+    const auto x = hn::Set(d, seen.x);
+    const auto y = hn::Set(d, seen.y);
+    const auto z = hn::Set(d, seen.z);
+    const auto across = hn::Max(hn::Abs(x), hn::Abs(y));
+    const auto size = hn::Max(across, hn::Abs(z));
+    longest = hn::GetLane(size);
+    const auto is_one = [&](auto mask) HWY_ATTR {
+        return static_cast<std::size_t>(hn::GetLane(hn::IfThenElseZero(mask, hn::Set(d, 1.0))));
+    };
+    const auto is_z = hn::Gt(hn::Abs(z), across);
+    const auto is_x = hn::Ge(hn::Abs(x), size);
+    const auto is_negative =
+        hn::Lt(hn::IfThenElse(is_x, x, hn::IfThenElse(is_z, z, y)), hn::Zero(d));
+    const std::size_t axis_of_two = 2 * is_one(is_z) + is_one(hn::AndNot(is_x, hn::Not(is_z)));
+    return 2 * axis_of_two + is_one(is_negative);
+}
+
+/// A ray of the grid's pencil: of its direction only what `Heading` leaves open. Points to what is
+/// in memory already.
+struct Segment {
+    const Vec3& origin;
+    const Vec3& direction; ///< away from a radial emitter; anything for others
+    float t_min, t_max;
+};
+
+HWY_INLINE Segment segment_of(const Ray& ray) {
+    return {ray.origin, ray.direction, ray.t_min, ray.t_max};
+}
+
+/// Why a ray has no place in a face. Apart, as it is rare.
+template <Heading heading>
+HWY_NOINLINE Where where_else(const Grid& grid, const Segment& ray, const FaceMap& map) {
+    double z = 0;
+    if (grid.pencil.kind() == Pencil::Kind::parallel)
+        z = static_cast<double>(ray.origin[map.axis]);
+    else if (heading == Heading::to_emitter)
+        z = static_cast<double>(ray.origin[map.axis]) - grid.apex[map.axis];
+    if (!(std::abs(z) <= map.reach)) return Where::unknown;
+    if (map.size_u == 0) return Where::outside;
+    const double units = z * map.sign * map.depth_scale + map.depth_offset;
+    return units > map.least[2] && units < map.limit[3] ? Where::outside : Where::unknown;
+}
+
+template <Heading heading>
+HWY_INLINE Where locate(const Grid& grid, const Segment& ray, Spot& spot) {
+    const hn::CappedTag<double, 4> d;
+    const hn::Rebind<std::int32_t, decltype(d)> integers;
+    // Not by scalar conversions: g++ lets those wait for what the last ray left in a register.
+    const auto to_doubles = [&](float x) HWY_ATTR {
+        return hn::PromoteTo(d, hn::Set(hn::Rebind<float, decltype(d)>(), x));
+    };
+    const bool is_parallel = grid.pencil.kind() == Pencil::Kind::parallel;
+    const bool is_direction = !is_parallel && heading == Heading::from_emitter;
+    const Vec3& from = is_direction ? ray.direction : ray.origin;
+    auto x = to_doubles(from.x);
+    auto y = to_doubles(from.y);
+    auto z = to_doubles(from.z);
+    std::size_t face = 0;
+    double longest = 1;
+    if (!is_parallel) {
+        if (heading == Heading::to_emitter) {
+            x = hn::Sub(x, hn::Set(d, grid.apex.x));
+            y = hn::Sub(y, hn::Set(d, grid.apex.y));
+            z = hn::Sub(z, hn::Set(d, grid.apex.z));
+        }
+        face = face_of({hn::GetLane(x), hn::GetLane(y), hn::GetLane(z)}, longest);
+    }
+    spot.face = &grid.faces[face];
+    const FaceMap& map = spot.face->map;
+    // Hits at an infinite t do not count. The rounded direction of a shadow ray is as long up to
+    // 2^-23.
+    const float t = heading == Heading::to_emitter
+                        ? ray.t_min
+                        : std::min(ray.t_max, std::numeric_limits<float>::max());
+    const auto length = hn::Mul(to_doubles(t), hn::Set(d, longest));
+
+    bool is_inside = true;
+    for (std::size_t lane = 0; lane < 4; lane += hn::Lanes(d)) {
+        const auto load = [&](const FaceMap::Lanes& lanes)
+                              HWY_ATTR { return hn::LoadU(d, lanes.data() + lane); };
+        auto sum = load(map.columns[3]);
+        if (is_parallel) {
+            sum = hn::MulAdd(load(map.columns[2]), z, sum);
+            sum = hn::MulAdd(load(map.columns[1]), y, sum);
+            sum = hn::MulAdd(load(map.columns[0]), x, sum);
+        } else {
+            const auto product = hn::MulAdd(
+                load(map.columns[0]),
+                x,
+                hn::MulAdd(load(map.columns[1]), y, hn::Mul(load(map.columns[2]), z))
+            );
+            const auto inverse = hn::Div(hn::Set(d, 1.0), hn::Set(d, longest));
+            sum = hn::MulAdd(
+                product, hn::MulAdd(load(divided), inverse, load(undivided<heading>)), sum
+            );
+        }
+        is_inside &=
+            hn::AllTrue(d, hn::And(hn::Ge(sum, load(map.least)), hn::Lt(sum, load(map.limit))));
+        sum = hn::MulAdd(load(heading == Heading::to_emitter ? map.toward : map.away), length, sum);
+        // Places are within these limits, too, but for depths.
+        sum = hn::Max(hn::Min(sum, load(depth_limit)), hn::Zero(d));
+        hn::StoreU(hn::DemoteTo(integers, sum), integers, spot.units.data() + lane);
+    }
+    if (!is_inside) [[unlikely]]
+        return where_else<heading>(grid, ray, map);
+
+    bool is_whole = ray.t_max >= map.whole_t;
+    if constexpr (heading == Heading::from_emitter) {
+        const double start = is_parallel ? static_cast<double>(ray.origin[map.axis]) * map.sign : 0;
+        is_whole = depth_units_of(map, start) +
+                       static_cast<double>(ray.t_min) * longest * map.away[2] + map.depth_slack <
+                   shallowest - rounding;
+    }
+    spot.units[3] = is_whole ? spot.units[3] - rounding : nothing_sure;
+    return Where::inside;
+}
+
+/// The list that a ray must look through, or a verdict without one.
+struct Leaf {
+    Cell cell;
+    int shift; ///< its side is 2^shift units
+    bool has_verdict;
+    Verdict verdict;
+};
+
+/// Where in its cell of side 2^shift a place is, in half cells from the middle, times 2^15.
+HWY_INLINE std::int16_t place_in_cell(std::int32_t units, int shift) {
+    return static_cast<std::int16_t>(
+        (static_cast<std::uint32_t>(units) << (top_shift - shift)) ^ 0x8000U
+    );
+}
+
+HWY_INLINE const Cell* top_cell(const Spot& spot) {
+    const Face& face = *spot.face;
+    return face.cells + static_cast<std::ptrdiff_t>(spot.v() >> top_shift) * face.width +
+           (spot.u() >> top_shift);
+}
+
+/// What a cell of side 2^shift says of a ray at once. `decides_hits`: whether one that passes two
+/// triangles is "hit".
+template <bool decides_hits>
+HWY_INLINE Leaf look_at(const Cell& cell, int shift, const Spot& spot) {
+    // In 2^-15 of the cell.
+    const auto along = [&](std::int32_t units) {
+        return static_cast<std::int32_t>(
+            ((static_cast<std::uint32_t>(units) << (top_shift - shift)) & 0xFFFFU) >> 1U
+        );
+    };
+    const std::int32_t plane = cell.slope_u * along(spot.u()) + cell.slope_v * along(spot.v());
+    const bool is_miss = spot.deepest() - cell.base < (plane >> 15) * (1 << cell.shift);
+    const bool is_hit = decides_hits && (spot.sure() >> 8) > cell.cover;
+    return {cell, shift, is_miss || is_hit, is_miss ? Verdict::miss : Verdict::hit};
+}
+
+template <bool decides_hits, class Count>
+HWY_INLINE Leaf find_leaf(const Grid& grid, const Spot& spot, Count count) {
+    count.cell();
+    Leaf leaf = look_at<decides_hits>(*top_cell(spot), top_shift, spot);
+    while (!leaf.has_verdict && (leaf.cell.link & Cell::split_mark) != 0) [[unlikely]] {
+        count.cell();
+        const int shift = leaf.shift - split_bits;
+        const auto* const children = reinterpret_cast<const Cell*>(
+            grid.lists + std::size_t{leaf.cell.link & ~Cell::split_mark} * 16
+        );
+        const int child = ((spot.v() >> shift) & 3) * 4 + ((spot.u() >> shift) & 3);
+        leaf = look_at<decides_hits>(children[child], shift, spot);
+    }
+    return leaf;
+}
+
+/// Whether the leaf's list has all triangles that the ray may meet at most so deep.
+HWY_INLINE bool is_complete(std::int32_t deepest_hit, const Leaf& leaf) {
+    return (deepest_hit >> 8) <= leaf.cell.cover;
+}
+
+} // namespace raywise::pencil_detail::HWY_NAMESPACE
+
+HWY_AFTER_NAMESPACE();
+
+#endif
