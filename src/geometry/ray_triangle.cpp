@@ -103,15 +103,59 @@ double largest_size(const Vec3d& v) {
     return std::max(std::max(std::abs(v.x), std::abs(v.y)), std::abs(v.z));
 }
 
-/// What double precision can tell without asking where exactly its errors come from: whether that
-/// is sure, and then fills `hit` if there is one.
-///
 /// The weights from edges instead of vertices: V = e2.(a x d), W = e1.(d x a), U + V + W = d.(e1 x
 /// e2), t = a.(e1 x e2) / d.(e1 x e2), for the edges from a. What cancels when a triangle is far
 /// and small has canceled exactly before anything is multiplied. Each product of three has at most
 /// three rounded factors and four roundings of its own, and there are six of them: errors are
-/// below 12 * 6 units of the product of the largest components, as in triple_product. Not sure
-/// when a vertex is not finite.
+/// below 12 * 6 units of the product of the largest components, as in triple_product.
+struct EdgeForm {
+    double v, w, sum, volume;
+    double v_error, w_error, sum_error, volume_error;
+
+    EdgeForm(const Ray& ray, const Triangle& triangle) {
+        const Vec3d v0 = to_double(triangle.v0);
+        const Vec3d a = v0 - to_double(ray.origin);
+        const Vec3d e1 = to_double(triangle.v1) - v0;
+        const Vec3d e2 = to_double(triangle.v2) - v0;
+        const Vec3d d = to_double(ray.direction);
+        const Vec3d normal = cross(e1, e2);
+        const Vec3d moment = cross(a, d);
+        sum = dot(d, normal);
+        volume = dot(a, normal);
+        v = dot(e2, moment);
+        w = -dot(e1, moment);
+
+        constexpr double unit = 72 * 0x1p-53;
+        const double size_e1 = largest_size(e1);
+        const double size_e2 = largest_size(e2);
+        const double reach = unit * largest_size(a);
+        const double slope = largest_size(d);
+        const double face = size_e1 * size_e2;
+        const double edge = reach * slope;
+        sum_error = unit * slope * face;
+        volume_error = reach * face;
+        v_error = edge * size_e2;
+        w_error = edge * size_e1;
+    }
+
+    /// Good to 2^-22: where their own errors are small beside the sum.
+    [[nodiscard]] bool has_good_weights() const {
+        const double least_sum = std::abs(sum) * 0x1p-26;
+        return sum_error <= least_sum * 0x1p-5 && v_error <= least_sum && w_error <= least_sum;
+    }
+
+    [[nodiscard]] Hit hit(float t, PrimId id) const {
+        const double inverse = 1 / sum;
+        const auto weight = [&](double part) {
+            return static_cast<float>(std::clamp(part * inverse, 0.0, 1.0));
+        };
+        // Adding +0 turns -0 into +0.
+        return {t + 0.0F, weight(v), weight(w), id, sum < 0};
+    }
+};
+
+/// What double precision can tell without asking where exactly its errors come from: whether that
+/// is sure, and then fills `hit` if there is one. Not sure when a vertex is not finite.
 bool look(
     const Ray& ray,
     const Triangle& triangle,
@@ -119,30 +163,9 @@ bool look(
     float t_max,
     std::optional<Hit>& hit
 ) {
-    const Vec3d v0 = to_double(triangle.v0);
-    const Vec3d a = v0 - to_double(ray.origin);
-    const Vec3d e1 = to_double(triangle.v1) - v0;
-    const Vec3d e2 = to_double(triangle.v2) - v0;
-    const Vec3d d = to_double(ray.direction);
-    const Vec3d normal = cross(e1, e2);
-    const Vec3d moment = cross(a, d);
-    const double sum = dot(d, normal);
-    const double volume = dot(a, normal);
-    const double v = dot(e2, moment);
-    const double w = -dot(e1, moment);
+    const EdgeForm form(ray, triangle);
+    const auto [v, w, sum, volume, v_error, w_error, sum_error, volume_error] = form;
     const double u = sum - v - w;
-
-    constexpr double unit = 72 * 0x1p-53;
-    const double size_e1 = largest_size(e1);
-    const double size_e2 = largest_size(e2);
-    const double reach = unit * largest_size(a);
-    const double slope = largest_size(d);
-    const double face = size_e1 * size_e2;
-    const double sum_error = unit * slope * face;
-    const double volume_error = reach * face;
-    const double edge = reach * slope;
-    const double v_error = edge * size_e2;
-    const double w_error = edge * size_e1;
     // 1 + 2^-10 covers the two subtractions and the roundings of the bounds.
     const double u_error = (sum_error + v_error + w_error) * (1 + 0x1p-10) +
                            0x1p-50 * (std::abs(sum) + std::abs(v) + std::abs(w));
@@ -154,10 +177,7 @@ bool look(
         return is_above && is_below;
     }
     if ((u > 0) != (v > 0) || (v > 0) != (w > 0)) return true;
-    // Weights are good to 2^-22 only where their own errors are small beside the sum.
-    const double least_sum = std::abs(sum) * 0x1p-26;
-    if (!(sum_error <= least_sum * 0x1p-5 && v_error <= least_sum && w_error <= least_sum))
-        return false;
+    if (!form.has_good_weights()) return false;
 
     const double inverse = 1 / sum;
     const double t = volume * inverse;
@@ -169,11 +189,7 @@ bool look(
     if (high < ray.t_min || low > t_max) return true;
     if (low != high || !(high <= std::numeric_limits<float>::max())) return false;
     if (!(low >= ray.t_min && low <= t_max)) return true;
-    const auto weight = [&](double part) {
-        return static_cast<float>(std::clamp(part * inverse, 0.0, 1.0));
-    };
-    // Adding +0 turns -0 into +0.
-    hit.emplace(Hit{low + 0.0F, weight(v), weight(w), id, sum < 0});
+    hit.emplace(form.hit(low, id));
     return true;
 }
 
@@ -197,6 +213,8 @@ public:
         const Bounded sum = weight_sum();
         const std::optional<float> t = nearest_t(sum, t_max);
         if (!t || !(*t >= ray_.t_min && *t <= t_max) || std::isinf(*t)) return std::nullopt;
+        // Where they are good, the weights do not depend on how the rest was decided.
+        if (const EdgeForm form(ray_, triangle_); form.has_good_weights()) return form.hit(*t, id);
         const auto weight = [&](const Bounded& part) {
             return static_cast<float>(std::clamp(part.value / sum.value, 0.0, 1.0));
         };
