@@ -33,7 +33,6 @@ namespace detail {
 namespace {
 
 constexpr std::size_t width = WideNode::width;
-constexpr std::size_t max_index = 0x7FFFFFFF;
 
 /// The cheapest ways to stand for one binary node and all below it.
 struct Plan {
@@ -222,7 +221,7 @@ private:
     std::size_t write_node(NodeId id) {
         const Planner::Slots slots = plans_.slots_of(id);
         const std::size_t at = out_.nodes.size();
-        if (at > max_index) throw Error("collapse: too many nodes");
+        if (at >= WideRef::max_nodes) throw Error("collapse: too many nodes");
         out_.nodes.emplace_back(WideNode{});
         for (std::size_t i = 0; i < width; ++i) {
             if (i >= slots.count) {
@@ -245,7 +244,7 @@ private:
         prims_.erase(std::unique(prims_.begin(), prims_.end()), prims_.end());
         const std::size_t first = listed_.size();
         for (std::size_t i = 0; i < prims_.size(); i += TriangleBlock::width) {
-            if (listed_.size() > max_index) throw Error("collapse: too many triangles");
+            if (listed_.size() >= WideRef::max_blocks) throw Error("collapse: too many triangles");
             Listed& block = listed_.emplace_back();
             block.is_last = i + TriangleBlock::width >= prims_.size() ? 1 : 0;
             for (std::size_t lane = 0; lane < TriangleBlock::width; ++lane)
@@ -265,35 +264,22 @@ private:
             prims_.push_back(prim);
     }
 
-    /// What chunks of blocks have in common with the tree.
-    struct Extent {
-        Aabb box;
-        float largest = 0;
-
-        void add(const Extent& other) {
-            box = unite(box, other.box);
-            largest = std::max(largest, other.largest);
-        }
-    };
-
     void fill_blocks(const Executor& executor) {
         constexpr std::size_t chunk = 1024;
         out_.blocks.resize(listed_.size());
-        std::vector<Extent> extents((listed_.size() + chunk - 1) / chunk);
+        std::vector<Aabb> bounds_of_chunks((listed_.size() + chunk - 1) / chunk);
         executor.for_each_chunk(listed_.size(), chunk, [&](std::size_t begin, std::size_t end) {
-            Extent& extent = extents[begin / chunk];
+            Aabb& box = bounds_of_chunks[begin / chunk];
             for (std::size_t i = begin; i < end; ++i)
-                extent.add(fill_block(i));
+                box = unite(box, fill_block(i));
         });
-        Extent all;
-        for (const Extent& extent : extents)
-            all.add(extent);
-        out_.vertex_bounds = all.box;
-        out_.largest_doubled_extent = all.largest;
+        for (const Aabb& box : bounds_of_chunks)
+            out_.vertex_bounds = unite(out_.vertex_bounds, box);
     }
 
-    [[nodiscard]] Extent fill_block(std::size_t i) {
-        Extent extent;
+    /// Returns the bounds of its triangles.
+    [[nodiscard]] Aabb fill_block(std::size_t i) {
+        Aabb box;
         TriangleBlock& block = out_.blocks[i];
         block.is_last = listed_[i].is_last;
         block.unused = {};
@@ -305,9 +291,9 @@ private:
             }
             const Triangle triangle = triangles_[prim];
             block.set(lane, triangle, prim);
-            extent.add({bounds(triangle), block.doubled_extents[lane]});
+            box = unite(box, bounds(triangle));
         }
-        return extent;
+        return box;
     }
 
     const Bvh& tree_;

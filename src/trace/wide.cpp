@@ -38,19 +38,15 @@ const WideKernels& kernels(TraceMode mode) {
     return mode == TraceMode::watertight ? table.watertight : table.fast;
 }
 
-bool can_hit(const WideBvh& tree, const Ray& ray) {
-    return !tree.is_empty() && is_valid(ray);
-}
-
 } // namespace
 
 std::optional<Hit> closest_hit(const WideBvh& tree, const Ray& ray, TraceMode mode) {
-    if (!can_hit(tree, ray)) return std::nullopt;
+    if (tree.is_empty()) return std::nullopt;
     return kernels(mode).closest(tree, ray);
 }
 
 bool any_hit(const WideBvh& tree, const Ray& ray, TraceMode mode) {
-    return can_hit(tree, ray) && kernels(mode).any(tree, ray);
+    return !tree.is_empty() && kernels(mode).any(tree, ray);
 }
 
 void all_hits(
@@ -59,17 +55,17 @@ void all_hits(
     FunctionRef<void(const Hit&)> visit,
     TraceMode mode
 ) {
-    if (can_hit(tree, ray)) kernels(mode).all(tree, ray, visit);
+    if (!tree.is_empty()) kernels(mode).all(tree, ray, visit);
 }
 
 std::optional<Hit>
 closest_hit(const WideBvh& tree, const Ray& ray, Counts& counts, TraceMode mode) {
-    if (!can_hit(tree, ray)) return std::nullopt;
+    if (tree.is_empty()) return std::nullopt;
     return kernels(mode).closest_counted(tree, ray, counts);
 }
 
 bool any_hit(const WideBvh& tree, const Ray& ray, Counts& counts, TraceMode mode) {
-    return can_hit(tree, ray) && kernels(mode).any_counted(tree, ray, counts);
+    return !tree.is_empty() && kernels(mode).any_counted(tree, ray, counts);
 }
 
 void closest_hits(

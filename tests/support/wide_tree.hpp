@@ -8,7 +8,6 @@
 #include <raywise/bvh/wide_bvh.hpp>
 #include <raywise/geometry/triangle_view.hpp>
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <utility>
@@ -76,8 +75,6 @@ private:
                 const PrimId prim = prims[i + lane];
                 block.set(lane, triangles_[prim], prim);
                 out_.vertex_bounds = unite(out_.vertex_bounds, bounds(triangles_[prim]));
-                out_.largest_doubled_extent =
-                    std::max(out_.largest_doubled_extent, block.doubled_extents[lane]);
             }
         }
         return first;

@@ -16,19 +16,23 @@
 
 namespace raywise {
 
-/// What a slot of a wide node leads to: a node, or the first block of a leaf.
+/// What a slot of a wide node leads to: a node, or the first block of a leaf. As an address: how
+/// many times 8 bytes from the first node or block, so that a query has no more to compute.
 class WideRef {
 public:
+    static constexpr std::size_t max_nodes = std::size_t{1} << 26U;
+    static constexpr std::size_t max_blocks = (std::size_t{1} << 31U) / 24;
+
     WideRef() = default;
 
-    /// index < 2^31.
+    /// index < max_nodes.
     [[nodiscard]] static constexpr WideRef node(std::size_t index) {
-        return WideRef(static_cast<std::uint32_t>(index));
+        return WideRef(static_cast<std::uint32_t>(index * node_words));
     }
 
-    /// index < 2^31.
+    /// index < max_blocks.
     [[nodiscard]] static constexpr WideRef leaf(std::size_t index) {
-        return WideRef(static_cast<std::uint32_t>(index) | leaf_bit);
+        return WideRef(static_cast<std::uint32_t>(index * block_words) | leaf_bit);
     }
 
     [[nodiscard]] static constexpr WideRef from_bits(std::uint32_t bits) { return WideRef(bits); }
@@ -38,12 +42,19 @@ public:
     [[nodiscard]] constexpr bool is_leaf() const { return (bits_ & leaf_bit) != 0; }
 
     /// Into `nodes` or `blocks`.
-    [[nodiscard]] constexpr std::size_t index() const { return bits_ & ~leaf_bit; }
+    [[nodiscard]] constexpr std::size_t index() const {
+        return words() / (is_leaf() ? block_words : node_words);
+    }
+
+    /// From the first node or block, in units of 8 bytes.
+    [[nodiscard]] constexpr std::size_t words() const { return bits_ & ~leaf_bit; }
 
     friend constexpr bool operator==(WideRef, WideRef) = default;
 
 private:
     static constexpr std::uint32_t leaf_bit = 0x80000000U;
+    static constexpr std::size_t node_words = 32;
+    static constexpr std::size_t block_words = 24;
 
     explicit constexpr WideRef(std::uint32_t bits) : bits_(bits) {}
 
@@ -83,7 +94,7 @@ struct alignas(64) WideNode {
     }
 };
 
-static_assert(sizeof(WideNode) == 256, "four cache lines, of which a query reads all");
+static_assert(sizeof(WideNode) == 256, "four cache lines, of which a query reads all; see WideRef");
 
 /// Up to four triangles. A lane without one has NaN for coordinates, which nothing hits, and
 /// `no_prim`. The lanes in use come first.
@@ -108,7 +119,7 @@ struct alignas(64) TriangleBlock {
     }
 };
 
-static_assert(sizeof(TriangleBlock) == 192, "three cache lines");
+static_assert(sizeof(TriangleBlock) == 192, "three cache lines; see WideRef");
 
 /// At least twice the longest side of the triangle's box: how far a vertex may be, sheared along
 /// any ray that hits the triangle, from that ray.
@@ -122,10 +133,9 @@ struct WideBvh {
 
     LargeVector<WideNode> nodes;
     LargeVector<TriangleBlock> blocks;
-    Aabb vertex_bounds;               ///< of the triangles, in the world
-    Aabb box;                         ///< of all slots of the root, in the frame
-    BoxFrame frame;                   ///< of the boxes; triangles are in the world always
-    float largest_doubled_extent = 0; ///< of all blocks
+    Aabb vertex_bounds; ///< of the triangles, in the world
+    Aabb box;           ///< of all slots of the root, in the frame
+    BoxFrame frame;     ///< of the boxes; triangles are in the world always
 
     [[nodiscard]] bool is_empty() const { return nodes.empty(); }
 

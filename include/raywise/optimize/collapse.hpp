@@ -53,7 +53,7 @@ struct NodeWeights {
 /// leaf. Primitive i of `tree` is triangle i of `triangles`; the boxes are those of `tree`; where
 /// they are in another frame than the world, set `frame` of the result. No primitives: an empty
 /// tree. O(n) time, 80 bytes of temporary memory per node. The same bytes for any executor. Throws
-/// Error for parameters out of range and above 2^31 - 1 blocks.
+/// Error for parameters out of range and above WideRef::max_nodes or max_blocks.
 template <HitMeasure M>
 [[nodiscard]] WideBvh collapse(
     const Bvh& tree,

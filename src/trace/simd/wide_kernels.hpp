@@ -13,8 +13,8 @@
 
 namespace raywise::simd {
 
-/// Queries of one mode; a miss of `closest_batch` is Hit{}. The trees are not empty and the rays
-/// valid.
+/// Queries of one mode; a miss of `closest_batch` is Hit{}. The trees are not empty; rays that are
+/// not valid hit nothing.
 struct WideKernels {
     std::optional<Hit> (*closest)(const WideBvh&, const Ray&);
     bool (*any)(const WideBvh&, const Ray&);

@@ -14,6 +14,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#if HWY_TARGET != HWY_SCALAR // which has no vectors
+
 HWY_BEFORE_NAMESPACE();
 
 namespace raywise::simd {
@@ -22,7 +24,9 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 using Eight = hn::CappedTag<float, WideNode::width>;
-using Four = hn::CappedTag<float, TriangleBlock::width>;
+using Four = hn::FixedTag<float, TriangleBlock::width>;
+
+constexpr float unit_roundoff = 0x1p-24F;
 
 /// Bit i: lane i of the mask.
 template <class D, class Mask>
@@ -40,5 +44,7 @@ HWY_INLINE const float* floats_at(const void* base, std::size_t bytes) {
 } // namespace raywise::simd
 
 HWY_AFTER_NAMESPACE();
+
+#endif
 
 #endif

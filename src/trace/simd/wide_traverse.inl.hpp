@@ -22,6 +22,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#if HWY_TARGET != HWY_SCALAR
+
 HWY_BEFORE_NAMESPACE();
 
 namespace raywise::simd {
@@ -40,20 +42,19 @@ struct Entries {
 template <class D>
 HWY_INLINE Entries<D>
 enter_lanes(D d, const WideRay& ray, const WideNode& node, float reach_limit, std::size_t first) {
+    const PlaneMaps& maps = ray.planes;
     const auto near = [&](std::size_t axis) HWY_ATTR {
-        const PlaneMap& map = ray.axes[axis];
         return hn::MulAdd(
-            hn::Load(d, floats_at(&node, map.near_offset) + first),
-            hn::Set(d, map.near_scale),
-            hn::Set(d, map.near_shift)
+            hn::Load(d, floats_at(&node, maps.near_offset[axis]) + first),
+            hn::Set(d, maps.near_scale[axis]),
+            hn::Set(d, maps.near_shift[axis])
         );
     };
     const auto far = [&](std::size_t axis) HWY_ATTR {
-        const PlaneMap& map = ray.axes[axis];
         return hn::MulAdd(
-            hn::Load(d, floats_at(&node, map.far_offset) + first),
-            hn::Set(d, map.far_scale),
-            hn::Set(d, map.far_shift)
+            hn::Load(d, floats_at(&node, maps.far_offset[axis]) + first),
+            hn::Set(d, maps.far_scale[axis]),
+            hn::Set(d, maps.far_shift[axis])
         );
     };
     const auto entry = hn::Max(hn::Max(near(0), near(1)), hn::Max(near(2), hn::Set(d, ray.t_min)));
@@ -99,6 +100,7 @@ constexpr std::uint32_t done = 0xFFFFFFFFU;
 
 using EightKeys = hn::RebindToUnsigned<Eight>;
 using Keys = hn::Vec<EightKeys>;
+using Lanes = hn::Vec<Eight>;
 
 /// The lanes whose bits are set, in order, then any.
 HWY_INLINE Keys compressed(Keys v, std::uint32_t bits) {
@@ -167,13 +169,17 @@ HWY_INLINE std::size_t drop_beyond(Stack& stack, std::size_t height, float reach
     return kept;
 }
 
-/// Asks for the first lines of what will be opened later.
-HWY_INLINE void prefetch(const WideNode* nodes, const TriangleBlock* blocks, WideRef ref) {
+/// The first node and the first block, by WideRef::is_leaf.
+using Bases = std::array<const void*, 2>;
+
+HWY_INLINE const std::byte* address_of(const Bases& bases, WideRef ref) {
+    return static_cast<const std::byte*>(bases[ref.is_leaf() ? 1 : 0]) + ref.words() * 8;
+}
+
+/// Asks for all of what will be opened later.
+HWY_INLINE void prefetch(const Bases& bases, WideRef ref) {
     // Past the end for the last entry of the stack: a prefetch does not mind.
-    const auto node = reinterpret_cast<std::uintptr_t>(nodes) + ref.index() * sizeof(WideNode);
-    const auto block =
-        reinterpret_cast<std::uintptr_t>(blocks) + ref.index() * sizeof(TriangleBlock);
-    const auto* const at = reinterpret_cast<const std::byte*>(ref.is_leaf() ? block : node);
+    const std::byte* const at = address_of(bases, ref);
     constexpr std::size_t line = 64;
     for (std::size_t i = 0; i < sizeof(WideNode); i += line)
         hwy::Prefetch(at + i);
@@ -188,57 +194,66 @@ HWY_INLINE void
 traverse(const WideBvh& tree, const WideRay& ray, Observer& seen, OpenBlock&& open_block) {
     const Eight d;
     const EightKeys dk;
-    const auto near_scale_x = hn::Set(d, ray.axes[0].near_scale);
-    const auto near_scale_y = hn::Set(d, ray.axes[1].near_scale);
-    const auto near_scale_z = hn::Set(d, ray.axes[2].near_scale);
-    const auto near_shift_x = hn::Set(d, ray.axes[0].near_shift);
-    const auto near_shift_y = hn::Set(d, ray.axes[1].near_shift);
-    const auto near_shift_z = hn::Set(d, ray.axes[2].near_shift);
-    const auto far_scale_x = hn::Set(d, ray.axes[0].far_scale);
-    const auto far_scale_y = hn::Set(d, ray.axes[1].far_scale);
-    const auto far_scale_z = hn::Set(d, ray.axes[2].far_scale);
-    const auto far_shift_x = hn::Set(d, ray.axes[0].far_shift);
-    const auto far_shift_y = hn::Set(d, ray.axes[1].far_shift);
-    const auto far_shift_z = hn::Set(d, ray.axes[2].far_shift);
-    const auto t_min = hn::Set(d, ray.t_min);
-    const std::size_t near_x = ray.axes[0].near_offset, far_x = ray.axes[0].far_offset;
-    const std::size_t near_y = ray.axes[1].near_offset, far_y = ray.axes[1].far_offset;
-    const std::size_t near_z = ray.axes[2].near_offset, far_z = ray.axes[2].far_offset;
+    // Whole numbers are compared sooner than floats, and alike: entries are not below t_min >= +0,
+    // boxes with an exit below that are missed however far below, and no box with a hit has -0.
+    const hn::RebindToSigned<Eight> di;
+    const auto near_scale_x = hn::Set(d, ray.planes.near_scale[0]);
+    const auto near_scale_y = hn::Set(d, ray.planes.near_scale[1]);
+    const auto near_scale_z = hn::Set(d, ray.planes.near_scale[2]);
+    const auto near_shift_x = hn::Set(d, ray.planes.near_shift[0]);
+    const auto near_shift_y = hn::Set(d, ray.planes.near_shift[1]);
+    const auto near_shift_z = hn::Set(d, ray.planes.near_shift[2]);
+    const auto far_scale_x = hn::Set(d, ray.planes.far_scale[0]);
+    const auto far_scale_y = hn::Set(d, ray.planes.far_scale[1]);
+    const auto far_scale_z = hn::Set(d, ray.planes.far_scale[2]);
+    const auto far_shift_x = hn::Set(d, ray.planes.far_shift[0]);
+    const auto far_shift_y = hn::Set(d, ray.planes.far_shift[1]);
+    const auto far_shift_z = hn::Set(d, ray.planes.far_shift[2]);
+    const auto t_min = hn::BitCast(di, hn::Set(d, ray.t_min));
+    // Of the first node: what a reference adds is the same for all of these.
+    const WideNode* const nodes = tree.nodes.data();
+    const float* const near_x = floats_at(nodes, ray.planes.near_offset[0]);
+    const float* const near_y = floats_at(nodes, ray.planes.near_offset[1]);
+    const float* const near_z = floats_at(nodes, ray.planes.near_offset[2]);
+    const float* const far_x = floats_at(nodes, ray.planes.far_offset[0]);
+    const float* const far_y = floats_at(nodes, ray.planes.far_offset[1]);
+    const float* const far_z = floats_at(nodes, ray.planes.far_offset[2]);
+    const auto* const first_children =
+        reinterpret_cast<const std::uint32_t*>(nodes->children.data());
+    const Bases bases{nodes, tree.blocks.data()};
 
     Stack stack; // NOLINT(*-member-init): written before read
     std::size_t height = 1;
     stack.refs[0] = done;
     float reach_limit = reach(ray.t_max);
-    const WideNode* const nodes = tree.nodes.data();
-    const TriangleBlock* const blocks = tree.blocks.data();
     std::uint32_t current = WideRef::node(0).bits();
     for (;;) {
-        const auto reach_lanes = hn::Set(d, reach_limit);
+        const auto reach_lanes = hn::BitCast(di, hn::Set(d, reach_limit));
         while (!WideRef::from_bits(current).is_leaf()) {
             seen.inner(NodeId{});
             seen.box_tests(WideNode::width);
-            const WideNode& node = nodes[current];
-            const auto plane = [&](std::size_t offset)
-                                   HWY_ATTR { return hn::Load(d, floats_at(&node, offset)); };
+            // In floats, as the pointers are; a node's bits are its words.
+            const std::size_t at = 2 * std::size_t{current};
+            const auto meet = [&](const float* planes, Lanes scale, Lanes shift) HWY_ATTR {
+                return hn::BitCast(di, hn::MulAdd(hn::Load(d, planes + at), scale, shift));
+            };
             const auto entry = hn::Max(
                 hn::Max(
-                    hn::MulAdd(plane(near_x), near_scale_x, near_shift_x),
-                    hn::MulAdd(plane(near_y), near_scale_y, near_shift_y)
+                    meet(near_x, near_scale_x, near_shift_x),
+                    meet(near_y, near_scale_y, near_shift_y)
                 ),
-                hn::Max(hn::MulAdd(plane(near_z), near_scale_z, near_shift_z), t_min)
+                hn::Max(meet(near_z, near_scale_z, near_shift_z), t_min)
             );
             const auto exit = hn::Min(
                 hn::Min(
-                    hn::MulAdd(plane(far_x), far_scale_x, far_shift_x),
-                    hn::MulAdd(plane(far_y), far_scale_y, far_shift_y)
+                    meet(far_x, far_scale_x, far_shift_x), meet(far_y, far_scale_y, far_shift_y)
                 ),
-                hn::Min(hn::MulAdd(plane(far_z), far_scale_z, far_shift_z), reach_lanes)
+                hn::Min(meet(far_z, far_scale_z, far_shift_z), reach_lanes)
             );
-            const auto is_met = hn::Le(entry, exit);
-            const std::uint32_t hits = bits_of(d, is_met);
+            const auto is_met = hn::RebindMask(dk, hn::Gt(exit, entry));
+            const std::uint32_t hits = bits_of(dk, is_met);
             const auto count = static_cast<std::size_t>(std::popcount(hits));
-            const auto* const children =
-                reinterpret_cast<const std::uint32_t*>(node.children.data());
+            const std::uint32_t* const children = first_children + at;
             const Keys refs = hn::Load(dk, children);
             if (hits == 0) {
                 current = stack.refs[--height];
@@ -248,27 +263,30 @@ traverse(const WideBvh& tree, const WideRay& ray, Observer& seen, OpenBlock&& op
             if constexpr (ordered) {
                 const Keys key =
                     hn::Or(hn::AndNot(hn::Set(dk, 7U), hn::BitCast(dk, entry)), hn::Iota(dk, 0));
-                const auto is_met_key = hn::RebindMask(dk, is_met);
+                const auto child_at = [&](Keys keys) HWY_ATTR {
+                    const auto slots = hn::IndicesFromVec(dk, hn::And(keys, hn::Set(dk, 7U)));
+                    return hn::TableLookupLanes(refs, slots);
+                };
                 const Keys nearest =
-                    hn::MinOfLanes(dk, hn::IfThenElse(is_met_key, key, hn::Set(dk, 0xFFFFFFFFU)));
-                next = children[hn::GetLane(nearest) & 7U];
-                const Keys sorted = sorted_down(hn::IfThenElseZero(is_met_key, key));
+                    hn::MinOfLanes(dk, hn::IfThenElse(is_met, key, hn::Set(dk, 0xFFFFFFFFU)));
+                next = hn::GetLane(child_at(nearest));
+                const Keys sorted = sorted_down(hn::IfThenElseZero(is_met, key));
                 hn::StoreU(sorted, dk, stack.keys.data() + height);
-                const auto order = hn::IndicesFromVec(dk, hn::And(sorted, hn::Set(dk, 7U)));
-                hn::StoreU(hn::TableLookupLanes(refs, order), dk, stack.refs.data() + height);
+                hn::StoreU(child_at(sorted), dk, stack.refs.data() + height);
             } else {
                 hn::StoreU(compressed(refs, hits), dk, stack.refs.data() + height);
-                next = children[31 - std::countl_zero(hits)];
+                next = children[31 ^ hwy::Num0BitsAboveMS1Bit_Nonzero32(hits)];
             }
             // The last one pushed is next; the one below it most likely after that.
             height += count - 1;
             current = next;
-            prefetch(nodes, blocks, WideRef::from_bits(stack.refs[height - 1]));
+            prefetch(bases, WideRef::from_bits(stack.refs[height - 1]));
         }
         if (current == done) return;
         seen.leaf(NodeId{});
         const float old_reach = reach_limit;
-        const TriangleBlock* block = blocks + WideRef::from_bits(current).index();
+        const auto* block =
+            reinterpret_cast<const TriangleBlock*>(address_of(bases, WideRef::from_bits(current)));
         for (;; ++block) {
             for (std::size_t i = 0; i < TriangleBlock::width; ++i)
                 seen.prim(block->prims[i]);
@@ -337,5 +355,7 @@ traverse(const WideBvh& tree, const WideRay& ray, Observer& seen, OpenBlock&& op
 } // namespace raywise::simd
 
 HWY_AFTER_NAMESPACE();
+
+#endif
 
 #endif

@@ -105,6 +105,41 @@ TEST_P(Wide, EqualDistancesGoToTheLowestId) {
     }
 }
 
+/// More triangles in doubt than a query notes for later.
+TEST_P(Wide, FansAroundOneVertexAreHitThere) {
+    constexpr int count = 60;
+    const Vec3 top{0.1F, 0.2F, 0.3F};
+    const auto rim = [](int i) {
+        const float angle = 6.2831853F * static_cast<float>(i % count) / count;
+        return Vec3{std::cos(angle), std::sin(angle), -1};
+    };
+    Soup soup;
+    for (int i = 0; i < count; ++i)
+        soup.add({rim(i), rim(i + 1), top});
+    Rng rng(26);
+    for (std::size_t leaf_size = 1; leaf_size < 10; leaf_size += 3) {
+        const WideBvh tree = wide_tree(soup.view(), leaf_size);
+        for (int i = 0; i < 300; ++i) {
+            const auto coordinate = [&] { return 2 * rng.uniform() - 1; };
+            Ray ray{{coordinate(), coordinate(), 3}, {}};
+            ray.direction = top - ray.origin;
+            if (i % 2 == 0) ray = {{top.x, top.y, coordinate() + 2}, {0, 0, -1}};
+            const auto expected = brute_force_closest_hit(soup.view(), ray);
+            expect_same(closest_hit(tree, ray), expected);
+            ASSERT_EQ(any_hit(tree, ray), expected.has_value());
+            if (i % 2 == 0) {
+                // Every triangle of the fan, and the first of them that is not excluded.
+                ASSERT_EQ(brute_force_all_hits(soup.view(), ray).size(), count);
+                ray.excluded = PrimId{0};
+                EXPECT_EQ(closest_hit(tree, ray)->prim, PrimId{1});
+                ray.t_min = ray.t_max = expected->t;
+                EXPECT_EQ(closest_hit(tree, ray)->prim, PrimId{1});
+                EXPECT_TRUE(any_hit(tree, ray));
+            }
+        }
+    }
+}
+
 /// Each coordinate times `scale`, vertices and origins; t is unchanged.
 Soup scaled(const Soup& soup, float scale) {
     Soup out = soup;
