@@ -23,6 +23,7 @@
 #include <hwy/highway.h>
 #include "pencil/query/locate.inl.hpp"
 #include "pencil/query/list.inl.hpp"
+#include "pencil/query/batch.inl.hpp"
 #include "pencil/query/closest.inl.hpp"
 // clang-format on
 
@@ -86,7 +87,7 @@ any_hit_along(const Grid& grid, const Segment& segment, RayOf ray, PrimId exclud
         if (const auto verdict = any_hit_apart(grid, ray, where, count)) return *verdict;
     if (where == Where::outside) return Verdict::miss;
     const Leaf leaf = find_leaf<true>(grid, spot, count);
-    if (leaf.has_verdict) return leaf.verdict;
+    if (leaf.has_verdict()) return static_cast<Verdict>(leaf.verdict);
     return look_through(grid, ray, excluded, spot, leaf, count);
 }
 
@@ -108,7 +109,7 @@ HWY_INLINE Verdict closest_hit_along(const Grid& grid, const Ray& ray, Hit& hit,
         closest.add(id);
     if (where == Where::inside) {
         const Leaf leaf = find_leaf<false>(grid, spot, count);
-        if (!leaf.has_verdict) {
+        if (!leaf.has_verdict()) {
             Walk way = walk(grid, leaf, spot);
             count.list(way.left);
             do
@@ -137,7 +138,7 @@ Verdict all_hits_along(const Grid& grid, const Ray& ray, FunctionRef<void(const 
         add(id);
     if (where == Where::inside) {
         const Leaf leaf = find_leaf<false>(grid, spot, NoCounts{});
-        if (!leaf.has_verdict) {
+        if (!leaf.has_verdict()) {
             Walk way = walk(grid, leaf, spot);
             do
                 for (std::uint32_t bits = way.marks().possible; bits != 0; bits &= bits - 1)
@@ -209,84 +210,102 @@ Verdict AllHits(const Grid& grid, const Ray& ray, FunctionRef<void(const Hit&)> 
                : all_hits_along<Heading::from_emitter>(grid, ray, visit);
 }
 
-/// Rays of a batch that are answered together: while one waits for memory, the others go on.
-constexpr std::size_t together = 16;
-
-/// any_hit for a few rays toward the emitter: `ray_at(i)`, i < count <= together.
-template <class RayAt>
-HWY_INLINE void
-any_hit_together(const Grid& grid, std::size_t count, const RayAt& ray_at, Verdict* verdicts) {
-    std::array<Spot, together> spots;
+/// any_hit for the first shadow rays of `rays`, which pass all geometry; `ray_of(i)` is one of
+/// them.
+template <class RayOf>
+HWY_INLINE void any_hit_together(
+    const Grid& grid,
+    std::size_t count,
+    Shadows& rays,
+    const RayOf& ray_of,
+    Verdict* verdicts
+) {
     std::array<Leaf, together> leaves;
     std::array<std::uint8_t, together> open{};
-
+    locate_all(grid, count, shadow_t_max(grid), rays);
     std::size_t left = 0;
     for (std::size_t i = 0; i < count; ++i) {
-        const Ray ray = ray_at(i);
-        const Where where = locate<Heading::to_emitter>(grid, segment_of(ray), spots[i]);
         verdicts[i] = Verdict::miss;
-        if (where == Where::unknown && is_valid(ray)) verdicts[i] = Verdict::unknown;
-        if (where != Where::inside) continue;
+        if (rays.where[i] != Where::inside) [[unlikely]] {
+            if (rays.where[i] == Where::unknown && is_valid(ray_of(i)))
+                verdicts[i] = Verdict::unknown;
+            continue;
+        }
         open[left++] = static_cast<std::uint8_t>(i);
-        hwy::Prefetch(top_cell(spots[i]));
+        hwy::Prefetch(top_cell(rays.spot(i)));
     }
+    // Branches that no predictor guesses become steps of this counter.
     std::size_t kept = 0;
     for (std::size_t k = 0; k < left; ++k) {
         const std::size_t i = open[k];
-        leaves[i] = find_leaf<true>(grid, spots[i], NoCounts{});
-        verdicts[i] = leaves[i].verdict;
+        leaves[i] = find_leaf<true>(grid, rays.spot(i), NoCounts{});
+        verdicts[i] = static_cast<Verdict>(leaves[i].verdict);
         prefetch_list(grid, leaves[i]);
         open[kept] = static_cast<std::uint8_t>(i);
-        kept += static_cast<std::size_t>(!leaves[i].has_verdict);
+        kept += static_cast<std::size_t>(!leaves[i].has_verdict());
     }
     for (std::size_t k = 0; k < kept; ++k) {
         const std::size_t i = open[k];
-        const Ray ray = ray_at(i);
-        verdicts[i] = look_through(
-            grid, [at = &ray] { return *at; }, ray.excluded, spots[i], leaves[i], NoCounts{}
-        );
+        const auto ray = [&ray_of, i] { return ray_of(i); };
+        verdicts[i] =
+            look_through(grid, ray, rays.excluded[i], rays.spot(i), leaves[i], NoCounts{});
     }
+}
+
+HWY_INLINE void put(Shadows& rays, std::size_t i, Vec3 origin, float t_min, PrimId excluded) {
+    rays.x[i] = origin.x;
+    rays.y[i] = origin.y;
+    rays.z[i] = origin.z;
+    rays.t_min[i] = t_min;
+    rays.excluded[i] = excluded;
 }
 
 void OccludedBatch(const Grid& grid, const PointBatch& batch, Verdict* verdicts) {
-    const auto ray_at = [&](std::size_t i) {
-        return grid.pencil.shadow_ray(
-            batch.points[i], batch.t_min, batch.excluded == nullptr ? no_prim : batch.excluded[i]
-        );
+    const auto excluded = [&](std::size_t i) {
+        return batch.excluded == nullptr ? no_prim : batch.excluded[i];
     };
+    Shadows rays{};
     for (std::size_t first = 0; first < batch.count; first += together) {
         const std::size_t count = std::min(together, batch.count - first);
-        if (!grid.has_near) {
-            any_hit_together(
-                grid,
-                count,
-                [&](std::size_t i) HWY_ATTR { return ray_at(first + i); },
-                verdicts + first
+        const auto ray_of = [&, first](std::size_t i) {
+            return grid.pencil.shadow_ray(
+                batch.points[first + i], batch.t_min, excluded(first + i)
             );
+        };
+        if (grid.has_near) {
+            for (std::size_t i = 0; i < count; ++i)
+                verdicts[first + i] =
+                    any_hit_along<Heading::to_emitter>(grid, ray_of(i), NoCounts{});
             continue;
         }
-        for (std::size_t i = first; i < first + count; ++i)
-            verdicts[i] = any_hit_along<Heading::to_emitter>(grid, ray_at(i), NoCounts{});
+        for (std::size_t i = 0; i < count; ++i)
+            put(rays, i, batch.points[first + i], batch.t_min, excluded(first + i));
+        any_hit_together(grid, count, rays, ray_of, verdicts + first);
     }
 }
 
-void AnyHitBatch(const Grid& grid, const Ray* rays, std::size_t batch_size, Verdict* verdicts) {
+void AnyHitBatch(const Grid& grid, const Ray* batch, std::size_t batch_size, Verdict* verdicts) {
+    const bool is_parallel = grid.pencil.kind() == Pencil::Kind::parallel;
+    const float t_max = shadow_t_max(grid);
+    Shadows rays{};
     for (std::size_t first = 0; first < batch_size; first += together) {
         const std::size_t count = std::min(together, batch_size - first);
         bool are_shadows = !grid.has_near;
-        for (std::size_t i = first; i < first + count; ++i)
-            are_shadows = are_shadows && heading_of(grid, rays[i]) == Heading::to_emitter;
+        for (std::size_t i = 0; i < count; ++i) {
+            const Ray& ray = batch[first + i];
+            are_shadows &= ray.t_max == t_max;
+            // A shadow ray toward a lamp has any direction but starts elsewhere.
+            are_shadows &= is_parallel ? ray.direction == -grid.pencil.direction()
+                                       : ray.origin != grid.pencil.apex();
+            put(rays, i, ray.origin, ray.t_min, ray.excluded);
+        }
+        const auto ray_of = [at = batch + first](std::size_t i) { return at[i]; };
         if (are_shadows) {
-            any_hit_together(
-                grid,
-                count,
-                [&](std::size_t i) HWY_ATTR { return rays[first + i]; },
-                verdicts + first
-            );
+            any_hit_together(grid, count, rays, ray_of, verdicts + first);
             continue;
         }
-        for (std::size_t i = first; i < first + count; ++i)
-            verdicts[i] = any_hit_of(grid, rays[i], NoCounts{});
+        for (std::size_t i = 0; i < count; ++i)
+            verdicts[first + i] = any_hit_of(grid, batch[first + i], NoCounts{});
     }
 }
 

@@ -180,7 +180,7 @@ struct Walk {
 };
 
 HWY_INLINE Walk walk(const Grid& grid, const Leaf& leaf, const Spot& spot) {
-    const std::byte* const at = grid.lists + std::size_t{leaf.cell.link} * 16;
+    const std::byte* const at = grid.lists + std::size_t{leaf.cell->link} * 16;
     ListHead head;
     std::memcpy(&head, at, sizeof head);
     const auto depth = [&](std::int32_t units) {
@@ -202,7 +202,7 @@ HWY_INLINE Walk walk(const Grid& grid, const Leaf& leaf, const Spot& spot) {
 
 /// Asks for the start of a leaf's list ahead of its use.
 HWY_INLINE void prefetch_list(const Grid& grid, const Leaf& leaf) {
-    const std::byte* at = grid.lists + std::size_t{leaf.cell.link} * 16;
+    const std::byte* at = grid.lists + std::size_t{leaf.cell->link} * 16;
     for (std::size_t line = 0; line < 8; ++line)
         hwy::Prefetch(at + 64 * line);
 }

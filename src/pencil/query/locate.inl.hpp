@@ -184,12 +184,16 @@ HWY_INLINE Where locate(const Grid& grid, const Segment& ray, Spot& spot) {
     return Where::inside;
 }
 
-/// The list that a ray must look through, or a verdict without one.
+/// The list that a ray must look through, or a verdict without one. Small, so that it stays in
+/// registers: g++ copies larger ones in parts that wait for each other.
 struct Leaf {
-    Cell cell;
-    int shift; ///< its side is 2^shift units
-    bool has_verdict;
-    Verdict verdict;
+    const Cell* cell;
+    std::int32_t shift;   ///< its side is 2^shift units
+    std::int32_t verdict; ///< a Verdict, or `open`
+
+    static constexpr std::int32_t open = -1;
+
+    [[nodiscard]] HWY_INLINE bool has_verdict() const { return verdict != open; }
 };
 
 /// Where in its cell of side 2^shift a place is, in half cells from the middle, times 2^15.
@@ -218,18 +222,20 @@ HWY_INLINE Leaf look_at(const Cell& cell, int shift, const Spot& spot) {
     const std::int32_t plane = cell.slope_u * along(spot.u()) + cell.slope_v * along(spot.v());
     const bool is_miss = spot.deepest() - cell.base < (plane >> 15) * (1 << cell.shift);
     const bool is_hit = decides_hits && (spot.sure() >> 8) > cell.cover;
-    return {cell, shift, is_miss || is_hit, is_miss ? Verdict::miss : Verdict::hit};
+    constexpr auto miss = static_cast<std::int32_t>(Verdict::miss);
+    constexpr auto hit = static_cast<std::int32_t>(Verdict::hit);
+    return {&cell, shift, is_miss ? miss : is_hit ? hit : Leaf::open};
 }
 
 template <bool decides_hits, class Count>
 HWY_INLINE Leaf find_leaf(const Grid& grid, const Spot& spot, Count count) {
     count.cell();
     Leaf leaf = look_at<decides_hits>(*top_cell(spot), top_shift, spot);
-    while (!leaf.has_verdict && (leaf.cell.link & Cell::split_mark) != 0) [[unlikely]] {
+    while (!leaf.has_verdict() && (leaf.cell->link & Cell::split_mark) != 0) [[unlikely]] {
         count.cell();
         const int shift = leaf.shift - split_bits;
         const auto* const children = reinterpret_cast<const Cell*>(
-            grid.lists + std::size_t{leaf.cell.link & ~Cell::split_mark} * 16
+            grid.lists + std::size_t{leaf.cell->link & ~Cell::split_mark} * 16
         );
         const int child = ((spot.v() >> shift) & 3) * 4 + ((spot.u() >> shift) & 3);
         leaf = look_at<decides_hits>(children[child], shift, spot);
@@ -239,7 +245,7 @@ HWY_INLINE Leaf find_leaf(const Grid& grid, const Spot& spot, Count count) {
 
 /// Whether the leaf's list has all triangles that the ray may meet at most so deep.
 HWY_INLINE bool is_complete(std::int32_t deepest_hit, const Leaf& leaf) {
-    return (deepest_hit >> 8) <= leaf.cell.cover;
+    return (deepest_hit >> 8) <= leaf.cell->cover;
 }
 
 } // namespace raywise::pencil_detail::HWY_NAMESPACE
