@@ -63,7 +63,6 @@ Ids copy(const TriangleView& triangles, float* records, const Executor& executor
             part.ids.push_back(to_prim(i));
         }
     });
-    std::memset(records + count * record_floats, 0, slack_bytes);
     Ids all;
     all.ids.reserve(count);
     for (const Part& part : parts) {
@@ -252,17 +251,15 @@ PencilGrid build_pencil_grid(
     auto data = std::make_unique<PencilGrid::Data>(pencil);
     data->kernels = &best_kernels();
     if (pencil.kind() == Pencil::Kind::radial) data->apex = to_double(pencil.apex());
-    data->record_count = count;
-    data->record_memory.emplace(count * record_floats + slack_bytes / sizeof(float));
-    data->records = data->record_memory->get();
-    const Ids ids = copy(triangles, data->record_memory->get(), executor);
-    const Records records{data->records, ids.ids, ids.greatest};
+    data->triangles = triangles;
+    const LargeBuffer<float> values(count * record_floats);
+    const Ids ids = copy(triangles, values.get(), executor);
+    const Records records{values.get(), ids.ids, ids.greatest};
 
     const RawFaces raw = raw_faces(*data, records, executor);
     const double cap = params.bytes_per_triangle * static_cast<double>(count) + least_bytes;
-    const double free = cap - static_cast<double>(count * record_floats * sizeof(float));
     // References may be dropped later, and others be made by splits.
-    const auto most_references = static_cast<std::size_t>(free / 4);
+    const auto most_references = static_cast<std::size_t>(cap / 4);
     PencilGridParams coarser = params;
     double coarsening = 1;
     Faces faces;
@@ -286,7 +283,7 @@ PencilGrid build_pencil_grid(
             );
             fits = faces[f] != nullptr;
         }
-        if (is_last || (fits && static_cast<double>(bytes(faces)) <= free)) break;
+        if (is_last || (fits && static_cast<double>(bytes(faces)) <= cap)) break;
         ++data->statistics.coarsened;
         coarsening *= 2;
         coarser.leaf_size = std::min(2 * coarser.leaf_size, 1U << 24U);

@@ -1,6 +1,7 @@
 // The edges of a triangle as a cell's list has them.
 #pragma once
 
+#include "pencil/face_pieces.hpp"
 #include "pencil/footprint.hpp"
 #include "pencil/grid_data.hpp"
 

@@ -14,7 +14,10 @@
 
 namespace raywise::pencil_detail {
 
-/// The triangles as queries keep them, and their range.
+/// World vertices of a triangle, coordinate by coordinate: x of v0, v1, v2, then y, then z.
+inline constexpr std::size_t record_floats = 9;
+
+/// The triangles as the build reads them, and their range.
 struct Records {
     const float* values;         ///< record_floats each
     std::span<const PrimId> ids; ///< of those that are finite

@@ -148,10 +148,7 @@ struct Face {
 
 struct Kernels;
 
-/// World vertices of a triangle, coordinate by coordinate: x of v0, v1, v2, then y, then z.
-inline constexpr std::size_t record_floats = 9;
-
-/// Bytes that may be read beyond the last list or record.
+/// Bytes that may be read beyond the last list.
 inline constexpr std::size_t slack_bytes = 128;
 
 } // namespace raywise::pencil_detail
@@ -165,16 +162,14 @@ struct PencilGrid::Data {
     const pencil_detail::Kernels* kernels = nullptr;
     std::array<pencil_detail::Face, 6> faces{}; ///< 2 * axis + (1 when negative); parallel: 0
     const std::byte* lists = nullptr;           ///< lists and split cells
-    const float* records = nullptr;
+    TriangleView triangles;
     std::vector<PrimId> near; ///< radial: triangles at the apex
     bool has_near = false;    ///< whether there are such
     Vec3d apex{};
     bool is_tame = false; ///< whether coordinates are small enough for `sharp_hit`
 
     std::optional<LargeBuffer<std::byte>> memory; ///< top cells of all faces, then lists
-    std::optional<LargeBuffer<float>> record_memory;
     std::size_t memory_bytes = 0;
-    std::size_t record_count = 0;
     PencilGridStatistics statistics{};
 };
 

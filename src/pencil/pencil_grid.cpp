@@ -119,15 +119,11 @@ const PencilGridStatistics& PencilGrid::statistics() const {
 }
 
 std::size_t PencilGrid::size_in_bytes() const {
-    return data_->memory_bytes + data_->record_count * record_floats * sizeof(float) +
-           data_->near.size() * sizeof(PrimId) + sizeof(Data);
+    return data_->memory_bytes + data_->near.size() * sizeof(PrimId) + sizeof(Data);
 }
 
 std::uint64_t PencilGrid::content_hash() const {
-    std::uint64_t hash = hash_bytes({data_->memory->get(), data_->memory_bytes});
-    hash = hash_elements(
-        std::span<const float>(data_->records, data_->record_count * record_floats), hash
-    );
+    const std::uint64_t hash = hash_bytes({data_->memory->get(), data_->memory_bytes});
     return hash_elements(std::span<const PrimId>(data_->near), hash);
 }
 

@@ -121,9 +121,8 @@ bool AreaHandle::any_hit(const Ray& ray) const {
 }
 
 bool AreaHandle::is_gridded(std::span<const Ray> rays) const {
-    return grid_ != nullptr && std::all_of(rays.begin(), rays.end(), [&](const Ray& ray) {
-               return grid_->covers(ray);
-           });
+    return grid_ != nullptr &&
+           std::all_of(rays.begin(), rays.end(), [&](const Ray& ray) { return is_gridded(ray); });
 }
 
 bool AreaHandle::are_exact(std::span<const Ray> rays, const Executor& executor) const {
@@ -144,7 +143,7 @@ bool AreaHandle::are_exact(std::span<const Ray> rays, const Executor& executor) 
 bool AreaHandle::is_worth_drawing(std::size_t rays) const {
     const auto& triangles = structure().triangles;
     // Every triangle is looked at, which takes about as long as a tenth of a traced ray.
-    return triangles != nullptr && rays >= triangles->view().size() / 8;
+    return grid_ == nullptr && triangles != nullptr && rays >= triangles->view().size() / 8;
 }
 
 void AreaHandle::closest_hits(

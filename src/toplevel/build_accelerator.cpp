@@ -166,18 +166,13 @@ private:
         case StructureKind::none:
             break;
         case StructureKind::pencil_grid:
+            structure.triangles = shared_copy();
             structure.grid = std::make_shared<const PencilGrid>(
-                build_pencil_grid(triangles_, *structure.pencil, {}, executor_)
+                build_pencil_grid(structure.triangles->view(), *structure.pencil, {}, executor_)
             );
             break;
         case StructureKind::inversion:
-            if (!copy_)
-                copy_ = std::make_shared<const TriangleCopy>(copy_triangles(
-                    triangles_.size(),
-                    [&](std::size_t i) { return triangles_[to_prim(i)]; },
-                    executor_
-                ));
-            structure.triangles = copy_;
+            structure.triangles = shared_copy();
             break;
         case StructureKind::framed_tree:
             if (structure.tree.is_empty()) structure.tree = framed(area);
@@ -190,6 +185,15 @@ private:
             break;
         }
         return structure;
+    }
+
+    /// For the structures that read triangles in place.
+    [[nodiscard]] std::shared_ptr<const TriangleCopy> shared_copy() {
+        if (!copy_)
+            copy_ = std::make_shared<const TriangleCopy>(copy_triangles(
+                triangles_.size(), [&](std::size_t i) { return triangles_[to_prim(i)]; }, executor_
+            ));
+        return copy_;
     }
 
     void build_local_tree(LocalStructure& structure, const InfluenceArea& area) const {

@@ -35,7 +35,9 @@ enum class Verdict : std::uint8_t { miss, hit, unknown };
 ///   unless a shadow ray asks for any hit and reaches the emitter;
 /// - for points very far outside the scene (beyond 4 times its distance from the apex, or 256 times
 ///   its coordinates).
-/// Self-contained: the mesh may go. Const member functions are thread-safe and do not allocate.
+/// Reads the caller's triangles where a ray passes so close to an edge that a cell leaves a doubt,
+/// and for the place of a closest hit: they must stay as long as the grid is used. Const member
+/// functions are thread-safe and do not allocate.
 class PencilGrid {
 public:
     struct Data; ///< internal
@@ -56,7 +58,8 @@ public:
 
     /// any_hit(pencil().shadow_ray(point, t_min, excluded)), for a t_min >= 0; a miss where that is
     /// not valid. The fastest way to ask.
-    [[nodiscard]] Verdict occluded(const Vec3& point, float t_min = 0, PrimId excluded = no_prim) const;
+    [[nodiscard]] Verdict
+    occluded(const Vec3& point, float t_min = 0, PrimId excluded = no_prim) const;
 
     /// The closest hit in [t_min, t_max], written to `hit` when there is one. `ray` must be
     /// covered.
@@ -96,10 +99,10 @@ public:
 
     [[nodiscard]] const PencilGridStatistics& statistics() const;
 
-    /// Everything that queries read.
+    /// Everything that queries read but the triangles.
     [[nodiscard]] std::size_t size_in_bytes() const;
 
-    /// XXH3 of everything that queries read: equal for any number of threads that built it.
+    /// XXH3 of that: equal for any number of threads that built it.
     [[nodiscard]] std::uint64_t content_hash() const;
 
     /// The instruction set that queries run on: the best of the machine, as Highway names it.
@@ -117,7 +120,7 @@ private:
 };
 
 /// Triangles with a vertex that is not finite are left out, as no ray hits them. The result is the
-/// same for any number of threads. O(triangles + references); peak memory about 120 bytes a
+/// same for any number of threads. O(triangles + references); peak memory about 160 bytes a
 /// triangle beside the result. Throws Error for parameters out of range or more than 2^31
 /// triangles.
 [[nodiscard]] PencilGrid build_pencil_grid(

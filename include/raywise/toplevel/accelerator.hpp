@@ -96,7 +96,7 @@ struct LocalStructure {
     StructureChoice choice; ///< what was built, and why
     TracedTree tree;        ///< of the tree kinds; its primitives are ids of the scene
     std::shared_ptr<const PencilGrid> grid;        ///< of the kind pencil_grid, else null
-    std::shared_ptr<const TriangleCopy> triangles; ///< of the kind inversion, else null; shared
+    std::shared_ptr<const TriangleCopy> triangles; ///< of grids and inversion, else null; shared
     std::optional<Pencil> pencil;                  ///< of exact areas, whatever was built
     double expected_cost = 0; ///< of a ray that hits a tree's root, by the area's measure
     bool is_whole = false;    ///< whether the tree is over all triangles, not only the region's

@@ -26,11 +26,8 @@ template <class Count>
 HWY_INLINE bool is_hit(const Grid& grid, const Ray& ray, PrimId id, Count count) {
     if (id == ray.excluded) return false;
     count.prim();
-    const float* const record = grid.records + to_index(id) * record_floats;
     if (grid.is_tame)
-        if (const auto hit =
-                sharp_hit(ray, record, static_cast<std::size_t>(dominant_axis(ray.direction))))
-            return *hit;
+        if (const auto hit = sharp_hit(ray, grid.triangles[id])) return *hit;
     count.decided();
     return decide(grid, ray, id, ray.t_max).has_value();
 }

@@ -361,9 +361,7 @@ const Kernels& best_kernels() {
 }
 
 std::optional<Hit> decide(const Grid& grid, const Ray& ray, PrimId id, float t_max) {
-    const float* r = grid.records + to_index(id) * record_floats;
-    const Triangle triangle{{r[0], r[3], r[6]}, {r[1], r[4], r[7]}, {r[2], r[5], r[8]}};
-    return ExactKernel::decide(ray, triangle, id, t_max);
+    return ExactKernel::decide(ray, grid.triangles[id], id, t_max);
 }
 
 } // namespace raywise::pencil_detail

@@ -1,8 +1,9 @@
-// The line filter in double: for triangles that reach far beyond the place where they are met, so
-// that floats leave their depth in doubt.
+// A triangle against a ray in double arithmetic, where a list leaves a doubt. After [Woop13].
 #pragma once
 
 #include <raywise/geometry/ray.hpp>
+#include <raywise/geometry/triangle.hpp>
+#include <raywise/geometry/vec.hpp>
 
 #include <algorithm>
 #include <array>
@@ -13,41 +14,33 @@
 
 namespace raywise::pencil_detail {
 
-/// Whether the ray, whose direction is longest along `axis` up to rounding, hits the triangle
-/// within [t_min, t_max]; nothing when that is not sure. `record`: x of three vertices, then y,
-/// then z.
+/// Whether the ray hits the triangle within [t_min, t_max]; nothing when that is not sure.
 ///
 /// All numbers are floats and their differences nearly exact, so the bound of
-/// ExactKernel::surely_misses holds with e = 2^-53, and that of `cross` for the depth. Coordinates
-/// below 2^60 do not overflow.
-[[nodiscard]] inline std::optional<bool>
-sharp_hit(const Ray& ray, const float* record, std::size_t axis) {
+/// ExactKernel::surely_misses holds with e = 2^-53. The depth of the hit is z = sum(f z) / sum(f)
+/// for the edge functions f, one sign all, each within b, and depths within e of themselves, at
+/// most m: its numerator is within (3 b + 6 e S) m, its denominator within 3 b + 3 e S, S =
+/// |sum(f)|, so z is within m (6 b / S + 12 e) with the roundings of the quotient, second order
+/// terms left out; 8 and 16 stand for 6 and 12, and b <= S / 64 is asked for. Coordinates below
+/// 2^60 do not overflow.
+[[nodiscard]] inline std::optional<bool> sharp_hit(const Ray& ray, const Triangle& triangle) {
     constexpr double e = 0x1p-53;
-    const std::size_t along = axis;
-    const std::size_t across_u = (axis + 1) % 3;
-    const std::size_t across_v = (axis + 2) % 3;
-    const std::array<double, 3> origin{
-        static_cast<double>(ray.origin.x),
-        static_cast<double>(ray.origin.y),
-        static_cast<double>(ray.origin.z)
-    };
-    const std::array<double, 3> direction{
-        static_cast<double>(ray.direction.x),
-        static_cast<double>(ray.direction.y),
-        static_cast<double>(ray.direction.z)
-    };
+    const int along = dominant_axis(ray.direction);
+    const int across_u = (along + 1) % 3;
+    const int across_v = (along + 2) % 3;
+    const Vec3d origin = to_double(ray.origin);
+    const Vec3d direction = to_double(ray.direction);
     const double shear_u = direction[across_u] / direction[along];
     const double shear_v = direction[across_v] / direction[along];
+    const std::array<Vec3, 3> vertices{triangle.v0, triangle.v1, triangle.v2};
     std::array<double, 3> x{}, y{}, z{};
     double deep = 0;
     double wide = 0;
     for (std::size_t i = 0; i < 3; ++i) {
-        const auto seen = [&](std::size_t k) {
-            return static_cast<double>(record[3 * k + i]) - origin[k];
-        };
-        z[i] = seen(along);
-        x[i] = seen(across_u) - shear_u * z[i];
-        y[i] = seen(across_v) - shear_v * z[i];
+        const Vec3d seen = to_double(vertices[i]) - origin;
+        z[i] = seen[along];
+        x[i] = seen[across_u] - shear_u * z[i];
+        y[i] = seen[across_v] - shear_v * z[i];
         deep = std::max(deep, std::abs(z[i]));
         wide = std::max(wide, std::max(std::abs(x[i]), std::abs(y[i])));
     }
