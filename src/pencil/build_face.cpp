@@ -113,7 +113,7 @@ std::vector<Piece> snap(
     std::vector<Piece> pieces(raw.size());
     // What is farther outside is cut off by radial faces.
     const auto units = [](double x) {
-        return static_cast<std::int32_t>(std::lround(std::clamp(x, -0x1p28, 0x1p29)));
+        return static_cast<std::int32_t>(nearest(std::clamp(x, -0x1p28, 0x1p29)));
     };
     executor.for_each_chunk(raw.size(), chunk, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
@@ -254,7 +254,7 @@ std::unique_ptr<BuiltFace> build_face(
     built->pieces = snap(pieces, built->face, rounding, executor);
     Contents contents;
     if (!fill(contents, *built, most_references, executor)) return nullptr;
-    const EdgeLines edges(built->face.map, is_radial, records.values, apex);
+    const EdgeLines edges(built->face.map, is_radial, records, apex);
     build_cells(*built, contents, edges, is_radial, params, executor);
     return built;
 }

@@ -183,11 +183,11 @@ void CellBuilder::add_list(std::vector<Reference>& references, const Window& win
     std::sort(references.begin(), references.end(), [](const Reference& a, const Reference& b) {
         return std::tie(a.least, a.prim) < std::tie(b.least, b.prim);
     });
-    const std::int32_t nearest = references.front().least;
+    const std::int32_t first_depth = references.front().least;
     int depth_shift = 0;
-    while (((references.back().least - nearest) >> depth_shift) > 2 * greatest_depth)
+    while (((references.back().least - first_depth) >> depth_shift) > 2 * greatest_depth)
         ++depth_shift;
-    const std::int32_t base = nearest + (greatest_depth << depth_shift);
+    const std::int32_t base = first_depth + (greatest_depth << depth_shift);
 
     ++statistics_.leaves;
     statistics_.references += count;
@@ -338,8 +338,8 @@ void CellBuilder::set_near(
     while (std::ldexp(16000.0, shift) < steepest)
         if (++shift > 12) return;
     const double unit = std::ldexp(1.0, shift);
-    const double whole_u = std::nearbyint(widest->plane.slope_u / unit);
-    const double whole_v = std::nearbyint(widest->plane.slope_v / unit);
+    const double whole_u = nearest(widest->plane.slope_u / unit);
+    const double whole_v = nearest(widest->plane.slope_v / unit);
     const double slope_u = whole_u * unit;
     const double slope_v = whole_v * unit;
     double base = std::numeric_limits<double>::infinity();
@@ -371,7 +371,7 @@ CellBuilder::DepthRows CellBuilder::depth_rows(
     std::int32_t base,
     int depth_shift
 ) const {
-    const double unit = std::ldexp(1.0, depth_shift);
+    const auto unit = static_cast<double>(std::int64_t{1} << depth_shift);
     const double flat = (reference.least - base) >> depth_shift;
     const double greatest = std::ceil((reference.greatest - base) / unit) + 1;
     const bool is_endless = pieces_[reference.piece].reaches_apex;
@@ -390,8 +390,8 @@ CellBuilder::DepthRows CellBuilder::depth_rows(
     // Over half a cell, as places count.
     const double slope_u = reference.plane.slope_u / (2 * unit);
     const double slope_v = reference.plane.slope_v / (2 * unit);
-    const double whole_u = std::nearbyint(slope_u);
-    const double whole_v = std::nearbyint(slope_v);
+    const double whole_u = nearest(slope_u);
+    const double whole_v = nearest(slope_v);
     if (!(std::abs(whole_u) < 32000 && std::abs(whole_v) < 32000)) return constant;
     const Span span(reference.place, window, pieces_[reference.piece].margin);
     // Two products are rounded, to half a depth each.

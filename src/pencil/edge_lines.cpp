@@ -1,4 +1,5 @@
 #include "pencil/edge_lines.hpp"
+#include "pencil/face_map.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -28,31 +29,27 @@ double greatest(const Vec3d& v) {
     return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
 
-/// Places in units from the middle of the window. They are sums of four products, off by the
-/// roundings of the largest.
-Lines parallel_lines(const FaceMap& map, const std::array<Vec3d, 3>& p, const Window& window) {
+/// Places in units from the middle of the window, each within `off`.
+Lines parallel_lines(
+    const FaceMap& map,
+    const std::array<Vec3d, 3>& p,
+    const Window& window,
+    double off
+) {
     const double half = window.side * 0.5;
     std::array<double, 3> x{}, y{};
-    double largest = half;
-    double size = 0;
+    double size = half;
     for (std::size_t i = 0; i < 3; ++i) {
-        const auto place = [&](std::size_t lane, double middle) {
-            double sum = map.columns[3][lane];
-            largest = std::max(largest, std::abs(sum));
-            for (int axis = 0; axis < 3; ++axis) {
-                const double term = map.columns[static_cast<std::size_t>(axis)][lane] * p[i][axis];
-                largest = std::max(largest, std::abs(term));
-                sum += term;
-            }
-            return sum - middle;
+        const auto place = [&](std::size_t lane) {
+            return map.columns[0][lane] * p[i].x + map.columns[1][lane] * p[i].y +
+                   map.columns[2][lane] * p[i].z + map.columns[3][lane];
         };
-        x[i] = place(0, window.first_u + half);
-        y[i] = place(1, window.first_v + half);
+        x[i] = place(0) - (window.first_u + half);
+        y[i] = place(1) - (window.first_v + half);
         size = std::max({size, std::abs(x[i]), std::abs(y[i])});
     }
-    // Of a place; and of an edge's direction times what it is multiplied with, twice.
-    const double off = 0x1p-49 * largest;
-    const double error = 16 * (off + 0x1p-50 * size) * (size + half);
+    // Of a place, and of an edge's direction times what it is multiplied with, twice.
+    const double error = 32 * (off + 0x1p-50 * size) * size;
     Lines lines{};
     for (std::size_t i = 0; i < 3; ++i) {
         const std::size_t j = i == 2 ? 0 : i + 1;
@@ -125,9 +122,9 @@ int put(const Line& line, double place_error, std::int16_t* row) {
         row[edge_at] = static_cast<std::int16_t>(at > 0 ? 32767 : -32767);
         return row[edge_at];
     }
-    row[edge_u] = static_cast<std::int16_t>(std::lrint(factor * line.u));
-    row[edge_v] = static_cast<std::int16_t>(std::lrint(factor * line.v));
-    row[edge_at] = static_cast<std::int16_t>(std::lrint(at));
+    row[edge_u] = static_cast<std::int16_t>(nearest(factor * line.u));
+    row[edge_v] = static_cast<std::int16_t>(nearest(factor * line.v));
+    row[edge_at] = static_cast<std::int16_t>(nearest(at));
     return row[edge_at] + std::abs(row[edge_u]) + std::abs(row[edge_v]);
 }
 
@@ -165,7 +162,7 @@ EdgeRows box(const Footprint& bounds, const Window& window) {
         along(bounds.least_u, window.first_u) + along(bounds.least_v, window.first_v);
     const double greatest_u = along(bounds.greatest_u, window.first_u);
     const double greatest_v = along(bounds.greatest_v, window.first_v);
-    const auto number = [](double x) { return static_cast<std::int16_t>(std::lrint(x)); };
+    const auto number = [](double x) { return static_cast<std::int16_t>(nearest(x)); };
     const auto slope = static_cast<std::int16_t>(factor);
     return {
         {slope,
@@ -189,13 +186,24 @@ bool is_small(const Footprint& bounds, const Window& window) {
 
 } // namespace
 
+EdgeLines::EdgeLines(const FaceMap& map, bool is_radial, const Records& records, Vec3d apex)
+    : map_(map), is_radial_(is_radial), records_(records.values), apex_(apex) {
+    // A place is a sum of four products, off by the roundings of the largest.
+    for (std::size_t lane = 0; lane < 2; ++lane) {
+        double largest = std::abs(map.columns[3][lane]);
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            largest = std::max(largest, std::abs(map.columns[axis][lane]) * records.greatest);
+        off_ = std::max(off_, 0x1p-49 * largest);
+    }
+}
+
 EdgeRows EdgeLines::rows(const Piece& piece, const Footprint& bounds, const Window& window) const {
     const float* r = records_ + to_index(piece.prim) * record_floats;
     std::array<Vec3d, 3> vertices{};
     for (std::size_t i = 0; i < 3; ++i)
         vertices[i] = to_double(Vec3{r[i], r[3 + i], r[6 + i]});
     const Lines lines = is_radial_ ? radial_lines(map_, vertices, apex_, window)
-                                   : parallel_lines(map_, vertices, window);
+                                   : parallel_lines(map_, vertices, window, off_);
     const double place_error = piece.margin / (window.side * 0.5);
     // The bounds of a part say nothing of the other parts.
     if (!lines.is_sure)

@@ -22,8 +22,7 @@ struct EdgeRows {
 /// Edges of the triangles of a face, whole triangles also where the face's bounds cut them.
 class EdgeLines {
 public:
-    EdgeLines(const FaceMap& map, bool is_radial, const float* records, Vec3d apex)
-        : map_(map), is_radial_(is_radial), records_(records), apex_(apex) {}
+    EdgeLines(const FaceMap& map, bool is_radial, const Records& records, Vec3d apex);
 
     /// Of the triangle whose piece has these bounds in the cell `window`.
     [[nodiscard]] EdgeRows
@@ -34,6 +33,7 @@ private:
     bool is_radial_;
     const float* records_;
     Vec3d apex_;
+    double off_ = 0; ///< parallel: how far computed places of vertices may be off, in units
 };
 
 } // namespace raywise::pencil_detail

@@ -38,6 +38,13 @@ inline void set_lanes(FaceMap& map, bool is_radial) {
     map.limit = {map.size_u, map.size_v, far, far};
 }
 
+/// The nearest integer, ties to even, of an x below 2^51 in magnitude: without a call, as that of
+/// the standard library is.
+inline double nearest(double x) {
+    constexpr double shift = 0x1.8p52;
+    return (x + shift) - shift;
+}
+
 /// Unclamped. Monotone in z.
 inline double depth_units_of(const FaceMap& map, double z) {
     return z * map.depth_scale + map.depth_offset;
