@@ -41,6 +41,11 @@ public:
 
     [[nodiscard]] constexpr bool is_leaf() const { return (bits_ & leaf_bit) != 0; }
 
+    /// Of a leaf's block, the one after it.
+    [[nodiscard]] constexpr WideRef next_block() const {
+        return WideRef(bits_ + static_cast<std::uint32_t>(block_words));
+    }
+
     /// Into `nodes` or `blocks`.
     [[nodiscard]] constexpr std::size_t index() const {
         return words() / (is_leaf() ? block_words : node_words);

@@ -283,18 +283,22 @@ traverse(const WideBvh& tree, const WideRay& ray, Observer& seen, OpenBlock&& op
             prefetch(bases, WideRef::from_bits(stack.refs[height - 1]));
         }
         if (current == done) return;
-        seen.leaf(NodeId{});
+        // One block at a time, for a loop of its own would have all registers saved around it.
+        const WideRef ref = WideRef::from_bits(current);
+        const auto& block = *reinterpret_cast<const TriangleBlock*>(address_of(bases, ref));
+        for (std::size_t i = 0; i < TriangleBlock::width; ++i)
+            seen.prim(block.prims[i]);
         const float old_reach = reach_limit;
-        const auto* block =
-            reinterpret_cast<const TriangleBlock*>(address_of(bases, WideRef::from_bits(current)));
-        for (;; ++block) {
-            for (std::size_t i = 0; i < TriangleBlock::width; ++i)
-                seen.prim(block->prims[i]);
-            if (!open_block(*block, reach_limit)) return;
-            if (block->is_last != 0) break;
-        }
+        const bool goes_on = open_block(block, reach_limit);
+        const bool is_last = block.is_last != 0;
+        if (is_last || !goes_on) seen.leaf(NodeId{});
+        if (!goes_on) return;
         // Dropped now, so that no pop has to ask.
         if (ordered && reach_limit < old_reach) height = drop_beyond(stack, height, reach_limit);
+        if (!is_last) {
+            current = ref.next_block().bits();
+            continue;
+        }
         current = stack.refs[--height];
     }
 }
