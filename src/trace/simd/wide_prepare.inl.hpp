@@ -59,23 +59,12 @@ HWY_INLINE XyzLanes largest_sizes(const Aabb& a, const Aabb& b) {
     return hn::Max(largest(a), largest(b));
 }
 
-/// The part for boxes, of a ray in their frame; `slack` is how far planes move outward,
-/// `flat_slack` where a component of the direction is tiny beside the largest one.
-HWY_INLINE void map_planes(
-    XyzLanes o,
-    XyzLanes direction,
-    XyzLanes largest,
-    XyzLanes slack,
-    XyzLanes flat_slack,
-    PlaneMaps& out
-) {
+/// The part for boxes, of a ray in their frame without components that are too small; `slack` is
+/// how far planes move outward.
+HWY_INLINE void map_planes(XyzLanes o, XyzLanes direction, XyzLanes slack, PlaneMaps& out) {
     const Xyz d;
-    const auto is_flat = hn::Le(hn::Abs(direction), hn::Mul(largest, hn::Set(d, unit_roundoff)));
-    const auto least = hn::CopySign(hn::Mul(largest, hn::Set(d, 4 * unit_roundoff)), direction);
-    const auto inverse = hn::Div(hn::Set(d, 1.0F), hn::IfThenElse(is_flat, least, direction));
-    const auto outward = hn::MulAdd(
-        hn::IfThenElse(is_flat, flat_slack, slack), hn::Abs(inverse), hn::Set(d, 0x1p-100F)
-    );
+    const auto inverse = hn::Div(hn::Set(d, 1.0F), direction);
+    const auto outward = hn::MulAdd(slack, hn::Abs(inverse), hn::Set(d, 0x1p-100F));
     const auto far_inverse = hn::Mul(inverse, hn::Set(d, 1 + 16 * unit_roundoff));
     hn::Store(inverse, d, out.near_scale.data());
     hn::Store(hn::Neg(hn::MulAdd(o, inverse, outward)), d, out.near_shift.data());
@@ -128,8 +117,16 @@ HWY_INLINE bool prepare(const Ray& ray, const WideBvh& tree, WideRay& out) {
     if (!(hn::AllTrue(d, is_small) && m >= 0x1p-30F && ray.t_min >= 0 && ray.t_min <= ray.t_max))
         [[unlikely]]
         return false;
-    const XyzLanes flat_slack = hn::Mul(hn::MaxOfLanes(d, sizes), hn::Set(d, 32 * e));
-    map_planes(frame_o, frame_direction, largest, slack, flat_slack, out.planes);
+    // A branch, so that the inverse need not wait for what is the largest.
+    const auto is_flat =
+        hn::And(is_axis, hn::Le(hn::Abs(frame_direction), hn::Mul(largest, hn::Set(d, e))));
+    if (!hn::AllFalse(d, is_flat)) [[unlikely]] {
+        const XyzLanes least = hn::CopySign(hn::Mul(largest, hn::Set(d, 4 * e)), frame_direction);
+        frame_direction = hn::IfThenElse(is_flat, least, frame_direction);
+        slack =
+            hn::IfThenElse(is_flat, hn::Mul(hn::MaxOfLanes(d, sizes), hn::Set(d, 32 * e)), slack);
+    }
+    map_planes(frame_o, frame_direction, slack, out.planes);
     out.t_min = ray.t_min + 0.0F; // no -0
     out.t_max = ray.t_max;
     out.largest = m;
