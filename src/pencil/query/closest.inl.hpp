@@ -8,6 +8,7 @@
 
 #include "pencil/query/list.inl.hpp"
 #include "pencil/query/locate.inl.hpp"
+#include "pencil/query/settle.inl.hpp"
 #include "pencil/query/sharp_filter.hpp"
 
 #include <raywise/geometry/ray_triangle.hpp>
@@ -16,6 +17,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 HWY_BEFORE_NAMESPACE();
 
@@ -85,10 +87,18 @@ public:
     }
 
 private:
+    /// It is hit, and within the ray's interval.
     HWY_INLINE void decide_waiting() {
         if (waiting_ == no_prim) return;
-        add(waiting_);
-        waiting_ = no_prim;
+        const PrimId id = std::exchange(waiting_, no_prim);
+        Hit hit;
+        if (!settle(ray_, grid_.triangles[id], id, hit)) [[unlikely]] {
+            add(id);
+            return;
+        }
+        count_.prim();
+        count_.decided();
+        if (best_.prim == no_prim || is_closer(hit, best_)) best_ = hit;
     }
 
     const Grid& grid_;

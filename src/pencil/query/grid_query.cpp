@@ -24,6 +24,7 @@
 #include "pencil/query/locate.inl.hpp"
 #include "pencil/query/list.inl.hpp"
 #include "pencil/query/batch.inl.hpp"
+#include "pencil/query/settle.inl.hpp"
 #include "pencil/query/closest.inl.hpp"
 // clang-format on
 
