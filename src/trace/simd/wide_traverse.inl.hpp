@@ -186,9 +186,10 @@ HWY_INLINE void prefetch(const Bases& bases, WideRef ref) {
 }
 
 /// Opens leaves, nearest boxes first when `ordered`, the last slots first otherwise.
-/// `open_block(block, reach)` returns whether to go on, and may lower `reach`. One branch on what a
-/// node's boxes say, whether any is met: which and how many is what no predictor guesses, and a
-/// wrong guess costs more than a sorting network.
+/// `open_block(block, reach)` returns whether to go on, and may lower `reach`. The only branches on
+/// what a node's boxes say are whether none is met and whether one is, where a right guess spares
+/// a wait: which they are and how many more is what no predictor guesses, and a wrong guess costs
+/// more than a sorting network.
 template <bool ordered, class Observer, class OpenBlock>
 HWY_INLINE void
 traverse(const WideBvh& tree, const WideRay& ray, Observer& seen, OpenBlock&& open_block) {
@@ -257,6 +258,12 @@ traverse(const WideBvh& tree, const WideRay& ray, Observer& seen, OpenBlock&& op
             const Keys refs = hn::Load(dk, children);
             if (hits == 0) {
                 current = stack.refs[--height];
+                continue;
+            }
+            // A branch of its own, whose next node waits for no minimum of eight.
+            if (ordered && (hits & (hits - 1)) == 0) {
+                current = children[hwy::Num0BitsBelowLS1Bit_Nonzero32(hits)];
+                prefetch(bases, WideRef::from_bits(stack.refs[height - 1]));
                 continue;
             }
             std::uint32_t next = 0;
