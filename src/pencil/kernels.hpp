@@ -34,6 +34,7 @@ struct Kernels {
     Verdict (*all_hits)(const Grid&, const Ray&, FunctionRef<void(const Hit&)>);
     void (*occluded_batch)(const Grid&, const PointBatch&, Verdict*);
     void (*any_hit_batch)(const Grid&, const Ray*, std::size_t, Verdict*);
+    void (*closest_hit_batch)(const Grid&, const Ray*, std::size_t, Hit*, Verdict*);
 };
 
 /// Best first; never empty.

@@ -6,6 +6,7 @@
 #include <raywise/core/error.hpp>
 #include <raywise/core/hash.hpp>
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <utility>
@@ -78,11 +79,13 @@ void PencilGrid::closest_hits(
     const Executor& executor
 ) const {
     executor.for_each_chunk(rays.size(), batch_chunk, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            Hit hit;
-            const Verdict verdict = data_->kernels->closest_hit(*data_, rays[i], hit);
-            hits[i] = verdict == Verdict::unknown ? otherwise(rays[i]) : hit;
-        }
+        std::array<Verdict, batch_chunk> verdicts;
+        std::fill(&hits[begin], &hits[begin] + (end - begin), Hit{});
+        data_->kernels->closest_hit_batch(
+            *data_, rays.data() + begin, end - begin, hits.data() + begin, verdicts.data()
+        );
+        for (std::size_t i = begin; i < end; ++i)
+            if (verdicts[i - begin] == Verdict::unknown) hits[i] = otherwise(rays[i]);
     });
 }
 

@@ -21,9 +21,10 @@ namespace raywise::pencil_detail::HWY_NAMESPACE {
 /// Rays that are answered together: while one waits for memory, the others go on.
 constexpr std::size_t together = 32;
 
-/// Shadow rays that pass all geometry, and where they are. Arrays, so that lanes can be rays.
-struct Shadows {
-    alignas(64) std::array<float, together> x, y, z, t_min;
+/// Rays of a batch, and where they are. Arrays, so that lanes can be rays.
+struct Together {
+    alignas(64) std::array<float, together> x, y, z; ///< origin, or direction away from an apex
+    alignas(64) std::array<float, together> t;       ///< what `Spot` depends on: t_min, or t_max
     alignas(64) std::array<std::array<std::int32_t, together>, 4> units; ///< of `Spot`
     std::array<PrimId, together> excluded;
     std::array<const Face*, together> faces;
@@ -34,8 +35,9 @@ struct Shadows {
     }
 };
 
-/// `locate` of the first rays, for a parallel pencil: as many at a time as doubles fit a vector.
-HWY_INLINE void locate_parallel(const Grid& grid, std::size_t count, Shadows& rays) {
+/// `locate` of the first rays, shadow rays of a parallel pencil: as many at a time as doubles fit a
+/// vector.
+HWY_INLINE void locate_parallel(const Grid& grid, std::size_t count, Together& rays) {
     const hn::CappedTag<double, together> d;
     const hn::Rebind<float, decltype(d)> floats;
     const hn::Rebind<std::int32_t, decltype(d)> integers;
@@ -47,7 +49,7 @@ HWY_INLINE void locate_parallel(const Grid& grid, std::size_t count, Shadows& ra
         const auto x = load(rays.x);
         const auto y = load(rays.y);
         const auto z = load(rays.z);
-        const auto length = load(rays.t_min);
+        const auto length = load(rays.t);
         auto is_inside = hn::Eq(hn::Zero(d), hn::Zero(d));
         for (std::size_t lane = 0; lane < 4; ++lane) {
             const auto column = [&](std::size_t i)
@@ -78,10 +80,10 @@ HWY_INLINE void locate_parallel(const Grid& grid, std::size_t count, Shadows& ra
     }
 }
 
-/// `locate` of the first rays.
-HWY_INLINE void locate_all(const Grid& grid, std::size_t count, float t_max, Shadows& rays) {
+/// `locate` of the first rays, shadow rays that pass all geometry.
+HWY_INLINE void locate_shadows(const Grid& grid, std::size_t count, float t_max, Together& rays) {
     const auto segment = [&](std::size_t i, const Vec3& origin)
-                             HWY_ATTR { return Segment{origin, origin, rays.t_min[i], t_max}; };
+                             HWY_ATTR { return Segment{origin, origin, rays.t[i], t_max}; };
     const bool is_parallel = grid.pencil.kind() == Pencil::Kind::parallel;
     if (is_parallel) locate_parallel(grid, count, rays);
     for (std::size_t i = 0; i < count; ++i) {
@@ -95,6 +97,72 @@ HWY_INLINE void locate_all(const Grid& grid, std::size_t count, float t_max, Sha
         } else if (rays.where[i] != Where::inside) [[unlikely]] {
             rays.where[i] =
                 where_else<Heading::to_emitter>(grid, segment(i, origin), grid.faces[0].map);
+        }
+    }
+}
+
+/// `locate` of the first rays, which come from the apex, as far as they see the first one's face;
+/// others are `unknown`. Those that pass geometry before they begin are not noticed.
+HWY_INLINE void locate_from_apex(const Grid& grid, std::size_t count, Together& rays) {
+    const hn::CappedTag<double, together> d;
+    const hn::Rebind<float, decltype(d)> floats;
+    const hn::Rebind<std::int32_t, decltype(d)> integers;
+    double longest = 0;
+    const Vec3 first_ray{rays.x[0], rays.y[0], rays.z[0]};
+    const Face& face = grid.faces[face_of(to_double(first_ray), longest)];
+    const FaceMap& map = face.map;
+    const std::array<const float*, 3> rows{rays.x.data(), rays.y.data(), rays.z.data()};
+    for (std::size_t first = 0; first < count; first += hn::Lanes(d)) {
+        const auto load = [&](const float* row)
+                              HWY_ATTR { return hn::PromoteTo(d, hn::Load(floats, row + first)); };
+        const auto along = [&](int axis)
+                               HWY_ATTR { return load(rows[static_cast<std::size_t>(axis)]); };
+        const auto z = hn::Mul(along(map.axis), hn::Set(d, map.sign));
+        const auto inverse = hn::Div(hn::Set(d, 1.0), z);
+        const auto across = [&](int axis, double scale, double offset) HWY_ATTR {
+            const auto slope = hn::Mul(along(axis), inverse);
+            return hn::MulSub(slope, hn::Set(d, scale), hn::Set(d, offset));
+        };
+        const auto u = across(map.axis_u, map.scale_u, map.offset_u);
+        const auto v = across(map.axis_v, map.scale_v, map.offset_v);
+        const auto zero = hn::Zero(d);
+        const auto is_within = [&](auto place, double size) HWY_ATTR {
+            return hn::And(hn::Ge(place, zero), hn::Lt(place, hn::Set(d, size)));
+        };
+        // A face lists what is a little beyond its edges, too.
+        const auto edge = hn::Mul(z, hn::Set(d, 1 + 0x1p-6));
+        const auto sees_face = hn::And(
+            hn::Gt(z, zero),
+            hn::And(
+                hn::Le(hn::Abs(along(map.axis_u)), edge), hn::Le(hn::Abs(along(map.axis_v)), edge)
+            )
+        );
+        const auto is_inside = hn::And(is_within(u, map.size_u), is_within(v, map.size_v));
+        const auto length = hn::Mul(load(rays.t.data()), z);
+        const auto depth = [&](std::size_t lane) HWY_ATTR {
+            const auto end =
+                hn::MulAdd(hn::Set(d, map.away[lane]), length, hn::Set(d, map.columns[3][lane]));
+            return hn::Max(hn::Min(end, hn::Set(d, depth_limit[lane])), zero);
+        };
+        const auto put = [&](std::size_t lane, auto value) HWY_ATTR {
+            hn::Store(hn::DemoteTo(integers, value), integers, &rays.units[lane][first]);
+        };
+        put(0, u);
+        put(1, v);
+        put(2, depth(2));
+        put(3, depth(3));
+        // 0 where another face must be asked, 1 where nothing is, else 2.
+        const auto one = hn::Set(d, 1.0);
+        const auto kind =
+            hn::IfThenElseZero(sees_face, hn::Add(one, hn::IfThenElseZero(is_inside, one)));
+        alignas(64) std::array<double, together> kinds; // NOLINT(*-member-init): written next
+        hn::Store(kind, d, kinds.data());
+        for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {
+            constexpr std::array<Where, 3> wheres{Where::unknown, Where::outside, Where::inside};
+            const std::size_t i = first + lane;
+            rays.faces[i] = &face;
+            rays.units[3][i] -= rounding;
+            rays.where[i] = wheres[static_cast<std::size_t>(kinds[lane])];
         }
     }
 }

@@ -80,6 +80,9 @@ public:
         return true;
     }
 
+    /// The only triangle that may be hit first, when that is known; else no_prim.
+    [[nodiscard]] PrimId only_one() const { return best_.prim == no_prim ? waiting_ : no_prim; }
+
     [[nodiscard]] HWY_INLINE bool finish(Hit& hit) {
         decide_waiting();
         if (best_.prim != no_prim) hit = best_;

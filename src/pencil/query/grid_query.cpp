@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <vector>
 
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
@@ -33,6 +34,8 @@ HWY_BEFORE_NAMESPACE();
 namespace raywise::pencil_detail::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
+
+constexpr float largest_float = std::numeric_limits<float>::max();
 
 /// One of the triangles that the ray is not sure to hit, nor to miss.
 template <class RayOf, class Count>
@@ -217,13 +220,13 @@ template <class RayOf>
 HWY_INLINE void any_hit_together(
     const Grid& grid,
     std::size_t count,
-    Shadows& rays,
+    Together& rays,
     const RayOf& ray_of,
     Verdict* verdicts
 ) {
     std::array<Leaf, together> leaves;
     std::array<std::uint8_t, together> open{};
-    locate_all(grid, count, shadow_t_max(grid), rays);
+    locate_shadows(grid, count, shadow_t_max(grid), rays);
     std::size_t left = 0;
     for (std::size_t i = 0; i < count; ++i) {
         verdicts[i] = Verdict::miss;
@@ -253,11 +256,11 @@ HWY_INLINE void any_hit_together(
     }
 }
 
-HWY_INLINE void put(Shadows& rays, std::size_t i, Vec3 origin, float t_min, PrimId excluded) {
-    rays.x[i] = origin.x;
-    rays.y[i] = origin.y;
-    rays.z[i] = origin.z;
-    rays.t_min[i] = t_min;
+HWY_INLINE void put(Together& rays, std::size_t i, Vec3 place, float t, PrimId excluded) {
+    rays.x[i] = place.x;
+    rays.y[i] = place.y;
+    rays.z[i] = place.z;
+    rays.t[i] = t;
     rays.excluded[i] = excluded;
 }
 
@@ -265,7 +268,7 @@ void OccludedBatch(const Grid& grid, const PointBatch& batch, Verdict* verdicts)
     const auto excluded = [&](std::size_t i) {
         return batch.excluded == nullptr ? no_prim : batch.excluded[i];
     };
-    Shadows rays{};
+    Together rays{};
     for (std::size_t first = 0; first < batch.count; first += together) {
         const std::size_t count = std::min(together, batch.count - first);
         const auto ray_of = [&, first](std::size_t i) {
@@ -288,7 +291,7 @@ void OccludedBatch(const Grid& grid, const PointBatch& batch, Verdict* verdicts)
 void AnyHitBatch(const Grid& grid, const Ray* batch, std::size_t batch_size, Verdict* verdicts) {
     const bool is_parallel = grid.pencil.kind() == Pencil::Kind::parallel;
     const float t_max = shadow_t_max(grid);
-    Shadows rays{};
+    Together rays{};
     for (std::size_t first = 0; first < batch_size; first += together) {
         const std::size_t count = std::min(together, batch_size - first);
         bool are_shadows = !grid.has_near;
@@ -310,6 +313,142 @@ void AnyHitBatch(const Grid& grid, const Ray* batch, std::size_t batch_size, Ver
     }
 }
 
+/// Hits of rays that surely pass through their triangles; those that cannot be settled are decided.
+/// `order` names `count` of the rays.
+HWY_INLINE void settle_together(
+    const Grid& grid,
+    const Ray* batch,
+    std::span<const std::uint8_t> order,
+    const std::array<PrimId, together>& prims,
+    Hit* hits,
+    Verdict* verdicts
+) {
+    using D = hn::CappedTag<double, 8>;
+    const D d;
+    const hn::Rebind<float, D> floats;
+    constexpr std::size_t most = 8;
+    alignas(64) std::array<std::array<float, most>, 12> rows{};
+    for (std::size_t first = 0; first < order.size(); first += hn::Lanes(d)) {
+        const std::size_t lanes = std::min(order.size() - first, hn::Lanes(d));
+        for (std::size_t lane = 0; lane < lanes; ++lane) {
+            const std::size_t i = order[first + lane];
+            const Triangle triangle = grid.triangles[prims[i]];
+            const std::array<Vec3, 4> points{
+                triangle.v0, triangle.v1, triangle.v2, batch[i].direction
+            };
+            for (std::size_t k = 0; k < points.size(); ++k) {
+                rows[3 * k][lane] = points[k].x;
+                rows[3 * k + 1][lane] = points[k].y;
+                rows[3 * k + 2][lane] = points[k].z;
+            }
+        }
+        const auto load = [&](std::size_t row) HWY_ATTR {
+            return hn::PromoteTo(d, hn::Load(floats, rows[row].data()));
+        };
+        const auto point = [&](std::size_t k) HWY_ATTR {
+            return Points<D>{load(3 * k), load(3 * k + 1), load(3 * k + 2)};
+        };
+        const Points<D> origin{
+            hn::Set(d, grid.apex.x), hn::Set(d, grid.apex.y), hn::Set(d, grid.apex.z)
+        };
+        const Settled<D> settled = settle(d, origin, point(3), point(0), point(1), point(2));
+        alignas(64) std::array<float, most> t, u, v;          // NOLINT(*-member-init)
+        alignas(64) std::array<double, most> sum, is_settled; // NOLINT(*-member-init)
+        hn::Store(settled.t, floats, t.data());
+        hn::Store(settled.u, floats, u.data());
+        hn::Store(settled.v, floats, v.data());
+        hn::Store(settled.sum, d, sum.data());
+        hn::Store(settled.is_settled, d, is_settled.data());
+        for (std::size_t lane = 0; lane < lanes; ++lane) {
+            const std::size_t i = order[first + lane];
+            verdicts[i] = Verdict::hit;
+            if (is_settled[lane] == 1)
+                hits[i] = {t[lane], u[lane], v[lane], prims[i], sum[lane] < 0};
+            else if (const auto hit = decide(grid, batch[i], prims[i], batch[i].t_max))
+                hits[i] = *hit;
+        }
+    }
+}
+
+/// closest_hit for rays from the apex, which begin before all geometry.
+HWY_INLINE void closest_hit_together(
+    const Grid& grid,
+    const Ray* batch,
+    std::size_t count,
+    Together& rays,
+    Hit* hits,
+    Verdict* verdicts
+) {
+    constexpr auto heading = Heading::from_emitter;
+    std::array<Leaf, together> leaves;
+    std::array<std::uint8_t, together> open{}, sure{};
+    std::array<PrimId, together> prims{};
+    locate_from_apex(grid, count, rays);
+    std::size_t left = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        verdicts[i] = Verdict::miss;
+        if (rays.where[i] == Where::inside) {
+            open[left++] = static_cast<std::uint8_t>(i);
+            hwy::Prefetch(top_cell(rays.spot(i)));
+        } else if (rays.where[i] == Where::unknown) {
+            verdicts[i] = closest_hit_along<heading>(grid, batch[i], hits[i], NoCounts{});
+        }
+    }
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < left; ++k) {
+        const std::size_t i = open[k];
+        leaves[i] = find_leaf<false>(grid, rays.spot(i), NoCounts{});
+        prefetch_list(grid, leaves[i]);
+        open[kept] = static_cast<std::uint8_t>(i);
+        kept += static_cast<std::size_t>(!leaves[i].has_verdict());
+    }
+    std::size_t surely = 0;
+    for (std::size_t k = 0; k < kept; ++k) {
+        const std::size_t i = open[k];
+        const Spot spot = rays.spot(i);
+        Closest<heading, NoCounts> closest(grid, batch[i], NoCounts{});
+        Walk way = walk(grid, leaves[i], spot);
+        do
+            closest.look(way);
+        while (way.advance());
+        prims[i] = closest.only_one();
+        sure[surely] = static_cast<std::uint8_t>(i);
+        if (!is_complete(way.deepest(spot), leaves[i]))
+            verdicts[i] = Verdict::unknown;
+        else if (prims[i] != no_prim)
+            ++surely;
+        else if (closest.finish(hits[i]))
+            verdicts[i] = Verdict::hit;
+    }
+    settle_together(grid, batch, std::span(sure).first(surely), prims, hits, verdicts);
+}
+
+void ClosestHitBatch(
+    const Grid& grid,
+    const Ray* batch,
+    std::size_t batch_size,
+    Hit* hits,
+    Verdict* verdicts
+) {
+    Together rays{};
+    const bool is_radial = grid.pencil.kind() == Pencil::Kind::radial;
+    for (std::size_t first = 0; first < batch_size; first += together) {
+        const std::size_t count = std::min(together, batch_size - first);
+        bool are_views = is_radial && !grid.has_near;
+        for (std::size_t i = 0; i < count; ++i) {
+            const Ray& ray = batch[first + i];
+            are_views &= ray.origin == grid.pencil.apex() && ray.t_min == 0;
+            put(rays, i, ray.direction, std::min(ray.t_max, largest_float), ray.excluded);
+        }
+        if (are_views) {
+            closest_hit_together(grid, batch + first, count, rays, hits + first, verdicts + first);
+            continue;
+        }
+        for (std::size_t i = first; i < first + count; ++i)
+            verdicts[i] = closest_hit_of(grid, batch[i], hits[i], NoCounts{});
+    }
+}
+
 const Kernels kernels{
     hwy::TargetName(HWY_TARGET),
     Occluded,
@@ -319,7 +458,8 @@ const Kernels kernels{
     ClosestHitCounted,
     AllHits,
     OccludedBatch,
-    AnyHitBatch
+    AnyHitBatch,
+    ClosestHitBatch
 };
 
 const Kernels* GetKernels() {

@@ -12,8 +12,6 @@
 
 #include <hwy/highway.h>
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 
 HWY_BEFORE_NAMESPACE();
@@ -22,98 +20,135 @@ namespace raywise::pencil_detail::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-#if HWY_TARGET == HWY_SCALAR
+/// Vectors whose lanes are rays, or their triangles.
+template <class D>
+struct Points {
+    hn::Vec<D> x, y, z;
+};
 
-/// Without vectors exact arithmetic decides all.
-inline bool settle(const Ray&, const Triangle&, PrimId, Hit&) {
-    return false;
+template <class D>
+HWY_INLINE Points<D> operator-(const Points<D>& a, const Points<D>& b) {
+    return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
 }
 
-#else
-
-using Pair = hn::FixedTag<double, 2>;
-using DoublePair = hn::Vec<Pair>;
-
-/// Not by scalar conversions: g++ lets those wait for what was in a register before.
-HWY_INLINE DoublePair pair_of(float first, float second) {
-    const hn::FixedTag<float, 4> d;
-    return hn::PromoteTo(Pair(), hn::LowerHalf(hn::OddEven(hn::Set(d, second), hn::Set(d, first))));
+template <class D>
+HWY_INLINE hn::Vec<D> dot(const Points<D>& a, const Points<D>& b) {
+    return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
 }
 
-/// Fills `hit` for a ray that passes through the triangle's inside; false when t is too close to
-/// where floats round, or the weights are not precise enough.
-///
-/// With a the first vertex as seen from the origin, e1 and e2 the edges from there and d the
-/// direction: V = e2.(a x d), W = -e1.(a x d), U + V + W = d.(e1 x e2), t = a.(e1 x e2) / d.(e1 x
-/// e2), by the very operations and with the bounds of ExactKernel::decide, two triple products at a
-/// time.
-HWY_INLINE bool settle(const Ray& ray, const Triangle& triangle, PrimId id, Hit& hit) {
-    const Pair d;
-    const auto is_first = hn::FirstN(d, 1);
-    const Vec3 &v0 = triangle.v0, &v1 = triangle.v1, &v2 = triangle.v2;
-    // A component of (e1, a) and of (e2, d).
-    const auto edge_and_place = [&](float b, float a, float origin)
-                                    HWY_ATTR { return hn::Sub(pair_of(b, a), pair_of(a, origin)); };
-    const auto edge_and_direction = [&](float c, float a, float direction) HWY_ATTR {
-        return hn::Sub(pair_of(c, direction), hn::IfThenElseZero(is_first, pair_of(a, a)));
+template <class D>
+HWY_INLINE Points<D> cross(const Points<D>& a, const Points<D>& b) {
+    return {
+        hn::Sub(hn::Mul(a.y, b.z), hn::Mul(a.z, b.y)),
+        hn::Sub(hn::Mul(a.z, b.x), hn::Mul(a.x, b.z)),
+        hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))
     };
-    const auto px = edge_and_place(v1.x, v0.x, ray.origin.x);
-    const auto py = edge_and_place(v1.y, v0.y, ray.origin.y);
-    const auto pz = edge_and_place(v1.z, v0.z, ray.origin.z);
-    const auto qx = edge_and_direction(v2.x, v0.x, ray.direction.x);
-    const auto qy = edge_and_direction(v2.y, v0.y, ray.direction.y);
-    const auto qz = edge_and_direction(v2.z, v0.z, ray.direction.z);
+}
 
-    // (e1 x e2, a x d), and the other way round.
-    const auto swapped = [&](DoublePair a, DoublePair b)
-                             HWY_ATTR { return hn::Shuffle01(hn::Sub(a, b)); };
-    const auto x = swapped(hn::Mul(py, qz), hn::Mul(pz, qy));
-    const auto y = swapped(hn::Mul(pz, qx), hn::Mul(px, qz));
-    const auto z = swapped(hn::Mul(px, qy), hn::Mul(py, qx));
-    const auto v_and_sum = hn::Add(hn::Add(hn::Mul(qx, x), hn::Mul(qy, y)), hn::Mul(qz, z));
-    const auto w_and_volume = hn::Add(hn::Add(hn::Mul(px, x), hn::Mul(py, y)), hn::Mul(pz, z));
-    const auto second = [](DoublePair p) HWY_ATTR { return hn::GetLane(hn::Shuffle01(p)); };
-    const double v = hn::GetLane(v_and_sum);
-    const double sum = second(v_and_sum);
-    const double w = -hn::GetLane(w_and_volume);
-    const double volume = second(w_and_volume);
+template <class D>
+HWY_INLINE hn::Vec<D> largest_size(const Points<D>& a) {
+    return hn::Max(hn::Max(hn::Abs(a.x), hn::Abs(a.y)), hn::Abs(a.z));
+}
 
-    const auto largest = [&](DoublePair a, DoublePair b, DoublePair c) HWY_ATTR {
-        return hn::Max(hn::Max(hn::Abs(a), hn::Abs(b)), hn::Abs(c));
-    };
-    const auto sizes_p = largest(px, py, pz);
-    const auto sizes_q = largest(qx, qy, qz);
+/// Hits of rays that pass through their triangles.
+template <class D>
+struct Settled {
+    hn::Vec<hn::Rebind<float, D>> t, u, v;
+    hn::Vec<D> sum;        ///< below zero where the back is met
+    hn::Vec<D> is_settled; ///< 1, or 0 where t is too close to where floats round, or a weight not
+                           ///< precise enough
+};
+
+/// By the very operations of ExactKernel::decide, and with the bounds derived there.
+template <class D>
+HWY_INLINE Settled<D> settle(
+    D d,
+    const Points<D>& origin,
+    const Points<D>& direction,
+    const Points<D>& v0,
+    const Points<D>& v1,
+    const Points<D>& v2
+) {
+    const Points<D> a = v0 - origin;
+    const Points<D> e1 = v1 - v0;
+    const Points<D> e2 = v2 - v0;
+    const Points<D> normal = cross(e1, e2);
+    const Points<D> moment = cross(a, direction);
+    const auto sum = dot(direction, normal);
+    const auto volume = dot(a, normal);
+
     constexpr double unit = 72 * 0x1p-53;
-    const double size_e1 = hn::GetLane(sizes_p);
-    const double size_e2 = hn::GetLane(sizes_q);
-    const double slope = second(sizes_q);
-    const double reach = unit * second(sizes_p);
-    const double face = size_e1 * size_e2;
-    const double sum_error = unit * slope * face;
-    const double volume_error = reach * face;
-    const double edge_error = reach * slope * std::max(size_e1, size_e2);
-    const double least_sum = std::abs(sum) * 0x1p-26;
-    if (!(sum_error <= least_sum * 0x1p-5 && edge_error <= least_sum)) [[unlikely]]
-        return false;
+    const auto size_e1 = largest_size(e1);
+    const auto size_e2 = largest_size(e2);
+    const auto slope = largest_size(direction);
+    const auto reach = hn::Mul(hn::Set(d, unit), largest_size(a));
+    const auto face = hn::Mul(size_e1, size_e2);
+    const auto sum_error = hn::Mul(hn::Mul(hn::Set(d, unit), slope), face);
+    const auto volume_error = hn::Mul(reach, face);
+    const auto edge_error = hn::Mul(hn::Mul(reach, slope), hn::Max(size_e1, size_e2));
+    const auto least_sum = hn::Mul(hn::Abs(sum), hn::Set(d, 0x1p-26));
 
-    const double inverse = 1 / sum;
-    const double t = volume * inverse;
-    const double error =
-        (volume_error + std::abs(t) * sum_error) * std::abs(inverse) * (1 + 0x1p-20) +
-        0x1p-50 * std::abs(t);
-    const auto low = static_cast<float>(t - error);
-    const auto high = static_cast<float>(t + error);
-    if (low != high || !(high <= std::numeric_limits<float>::max())) [[unlikely]]
-        return false;
-    const auto weight = [&](double part) {
-        return static_cast<float>(std::clamp(part * inverse, 0.0, 1.0));
+    const auto inverse = hn::Div(hn::Set(d, 1.0), sum);
+    const auto t = hn::Mul(volume, inverse);
+    const auto error = hn::Add(
+        hn::Mul(
+            hn::Mul(hn::Add(volume_error, hn::Mul(hn::Abs(t), sum_error)), hn::Abs(inverse)),
+            hn::Set(d, 1 + 0x1p-20)
+        ),
+        hn::Mul(hn::Abs(t), hn::Set(d, 0x1p-50))
+    );
+    const hn::Rebind<float, D> floats;
+    const auto low = hn::DemoteTo(floats, hn::Sub(t, error));
+    const auto high = hn::DemoteTo(floats, hn::Add(t, error));
+    const auto weight = [&](const Points<D>& edge) HWY_ATTR {
+        const auto part = hn::Mul(dot(edge, moment), inverse);
+        return hn::DemoteTo(floats, hn::Min(hn::Max(part, hn::Zero(d)), hn::Set(d, 1.0)));
     };
-    // Adding +0 turns -0 into +0.
-    hit = {low + 0.0F, weight(v), weight(w), id, sum < 0};
-    return true;
+    const auto is_one = hn::Eq(hn::PromoteTo(d, low), hn::PromoteTo(d, high));
+    const auto is_finite = hn::Le(
+        hn::PromoteTo(d, high), hn::Set(d, static_cast<double>(std::numeric_limits<float>::max()))
+    );
+    const auto is_precise = hn::And(
+        hn::Le(sum_error, hn::Mul(least_sum, hn::Set(d, 0x1p-5))), hn::Le(edge_error, least_sum)
+    );
+    const Points<D> minus_e1{hn::Neg(e1.x), hn::Neg(e1.y), hn::Neg(e1.z)};
+    return {// Adding +0 turns -0 into +0.
+            hn::Add(low, hn::Zero(floats)),
+            weight(e2),
+            weight(minus_e1),
+            sum,
+            hn::IfThenElseZero(hn::And(is_one, hn::And(is_finite, is_precise)), hn::Set(d, 1.0))
+    };
 }
 
-#endif
+/// Fills `hit` for a ray that passes through the triangle's inside, unless it cannot be settled.
+HWY_INLINE bool settle(const Ray& ray, const Triangle& triangle, PrimId id, Hit& hit) {
+    using D = hn::CappedTag<double, 1>;
+    const D d;
+    // Not by scalar conversions: g++ lets those wait for what was in a register before.
+    const auto to_doubles = [&](float x) HWY_ATTR {
+        return hn::PromoteTo(d, hn::Set(hn::Rebind<float, D>(), x));
+    };
+    const auto point = [&](const Vec3& p) HWY_ATTR {
+        return Points<D>{to_doubles(p.x), to_doubles(p.y), to_doubles(p.z)};
+    };
+    const Settled<D> settled = settle(
+        d,
+        point(ray.origin),
+        point(ray.direction),
+        point(triangle.v0),
+        point(triangle.v1),
+        point(triangle.v2)
+    );
+    hit = {
+        hn::GetLane(settled.t),
+        hn::GetLane(settled.u),
+        hn::GetLane(settled.v),
+        id,
+        hn::GetLane(settled.sum) < 0
+    };
+    return hn::GetLane(settled.is_settled) == 1;
+}
 
 } // namespace raywise::pencil_detail::HWY_NAMESPACE
 

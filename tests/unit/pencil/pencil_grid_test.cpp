@@ -344,42 +344,93 @@ TEST(PencilGrid, CullsWhatTwoTrianglesHideAndStillKnowsEveryShadow) {
     }
 }
 
-TEST(PencilGrid, BatchesAnswerAsSingleQueriesDo) {
-    const Soup soup = landscape(60);
-    const Executor two(2);
-    for (const Pencil& pencil :
-         {Pencil::parallel({0.3F, -1, 0.1F}), Pencil::radial({0.5F, 0.1F, 0.5F})}) {
-        const PencilGrid grid = build_pencil_grid(soup.view(), pencil);
-        Rng rng(19, 0);
-        std::vector<Ray> rays;
-        std::vector<Vec3> points;
-        std::vector<PrimId> excluded;
-        for (int k = 0; k < 20000; ++k) {
-            const Ray ray = random_pencil_ray(rng, pencil, soup, Coordinates::smooth);
-            if (!is_valid(ray)) continue;
-            rays.push_back(ray);
-            points.push_back(ray.origin);
-            excluded.push_back(ray.excluded);
+/// Rays that a batch may answer together, and such that it may not.
+enum class Together : std::uint8_t { shadows, views, anything };
+
+std::vector<Ray>
+batch_of(Together together, const Pencil& pencil, const Soup& soup, Coordinates how, Rng& rng) {
+    std::vector<Ray> rays;
+    for (int k = 0; k < 2000; ++k) {
+        Ray ray = random_pencil_ray(rng, pencil, soup, how);
+        PrimId prim = no_prim;
+        const Vec3 place = surface_point(rng, soup, prim);
+        if (together == Together::shadows) {
+            ray = pencil.shadow_ray(ray.origin, ray.t_min, ray.excluded);
+        } else if (together == Together::views) {
+            ray.origin = pencil.kind() == Pencil::Kind::radial ? pencil.apex() : place;
+            ray.direction =
+                pencil.kind() == Pencil::Kind::radial ? place - ray.origin : pencil.direction();
+            ray.t_min = 0;
         }
-        const std::size_t count = rays.size();
-        const auto any = std::make_unique<bool[]>(count);
-        const auto shadowed = std::make_unique<bool[]>(count);
-        std::vector<Hit> closest(count);
-        const auto yes = [](const Ray&) { return true; };
-        const Hit marked{.prim = PrimId{77}};
-        grid.any_hits(rays, {any.get(), count}, yes, two);
-        grid.closest_hits(rays, closest, [&](const Ray&) { return marked; }, two);
-        grid.occluded(points, 1e-4F, excluded, {shadowed.get(), count}, yes, two);
-        for (std::size_t i = 0; i < count; ++i) {
-            EXPECT_EQ(any[i], grid.any_hit(rays[i]) != Verdict::miss);
-            EXPECT_EQ(shadowed[i], grid.occluded(points[i], 1e-4F, excluded[i]) != Verdict::miss);
-            Hit hit;
-            const Verdict verdict = grid.closest_hit(rays[i], hit);
-            if (verdict == Verdict::unknown) hit = marked;
-            EXPECT_EQ(closest[i].prim, hit.prim);
-            EXPECT_EQ(closest[i].t, hit.t);
+        if (is_valid(ray) && pencil.holds(ray)) rays.push_back(ray);
+    }
+    return rays;
+}
+
+void expect_batches_like_single_queries(const PencilGrid& grid, const std::vector<Ray>& rays) {
+    const Executor two(2);
+    const std::size_t count = rays.size();
+    std::vector<Vec3> points;
+    std::vector<PrimId> excluded;
+    for (const Ray& ray : rays) {
+        points.push_back(ray.origin);
+        excluded.push_back(ray.excluded);
+    }
+    const auto any = std::make_unique<bool[]>(count);
+    const auto shadowed = std::make_unique<bool[]>(count);
+    std::vector<Hit> closest(count);
+    const auto yes = [](const Ray&) { return true; };
+    const Hit marked{.prim = PrimId{77}};
+    grid.any_hits(rays, {any.get(), count}, yes, two);
+    grid.closest_hits(rays, closest, [&](const Ray&) { return marked; }, two);
+    grid.occluded(points, 1e-4F, excluded, {shadowed.get(), count}, yes, two);
+    for (std::size_t i = 0; i < count; ++i) {
+        ASSERT_EQ(any[i], grid.any_hit(rays[i]) != Verdict::miss);
+        ASSERT_EQ(shadowed[i], grid.occluded(points[i], 1e-4F, excluded[i]) != Verdict::miss);
+        Hit hit;
+        const Verdict verdict = grid.closest_hit(rays[i], hit);
+        if (verdict == Verdict::unknown) hit = marked;
+        if (verdict == Verdict::miss) hit = Hit{};
+        ASSERT_EQ(closest[i].prim, hit.prim);
+        ASSERT_EQ(closest[i].t, hit.t);
+        ASSERT_EQ(closest[i].u, hit.u);
+        ASSERT_EQ(closest[i].v, hit.v);
+        ASSERT_EQ(closest[i].front, hit.front);
+    }
+}
+
+TEST(PencilGrid, BatchesAnswerAsSingleQueriesDoOnEveryInstructionSet) {
+    for (int i = 0; i < 20 && !testing::Test::HasFatalFailure(); ++i) {
+        Rng rng(19, static_cast<std::uint64_t>(i));
+        const auto how = i % 2 == 0 ? Coordinates::smooth : Coordinates::grid;
+        const Soup soup = i < 2 ? landscape(60) : random_soup(rng, 400, how);
+        const Pencil pencil = random_pencil(rng, soup, how);
+        PencilGrid grid = build_pencil_grid(soup.view(), pencil);
+        for (const std::string_view set : PencilGrid::instruction_sets()) {
+            grid.use_instruction_set(set);
+            for (const Together together :
+                 {Together::shadows, Together::views, Together::anything}) {
+                SCOPED_TRACE(testing::Message() << "soup " << i << ", " << set);
+                expect_batches_like_single_queries(
+                    grid, batch_of(together, pencil, soup, how, rng)
+                );
+            }
         }
     }
+}
+
+TEST(PencilGrid, FewShadowRaysOfADenseMeshLookAtATriangle) {
+    const Soup soup = landscape(200);
+    const Pencil pencil = Pencil::parallel({0.3F, -1, 0.1F});
+    const PencilGrid grid = build_pencil_grid(soup.view(), pencil);
+    Rng rng(20, 0);
+    PencilGridCounts counts;
+    for (int k = 0; k < 10000; ++k) {
+        PrimId prim = no_prim;
+        const Vec3 p = surface_point(rng, soup, prim);
+        static_cast<void>(grid.any_hit(pencil.shadow_ray(p, 1e-4F, prim), counts));
+    }
+    EXPECT_LT(counts.prims, counts.queries / 5);
 }
 
 TEST(PencilGrid, RefusesParametersOutOfRange) {
