@@ -124,7 +124,7 @@ HWY_INLINE void put(Together& rays, std::size_t i, Vec3 place, float t, PrimId e
     rays.x[i] = place.x;
     rays.y[i] = place.y;
     rays.z[i] = place.z;
-    rays.t[i] = t;
+    rays.t[i] = finite(t);
     rays.excluded[i] = excluded;
 }
 
@@ -192,11 +192,7 @@ void ClosestHitBatch(
         for (std::size_t i = 0; i < count; ++i) {
             const Ray& ray = batch[first + i];
             are_views &= ray.origin == grid.pencil.apex() && ray.t_min == 0;
-            put(rays,
-                i,
-                ray.direction,
-                std::min(ray.t_max, std::numeric_limits<float>::max()),
-                ray.excluded);
+            put(rays, i, ray.direction, ray.t_max, ray.excluded);
         }
         if (are_views) {
             closest_hit_together(grid, batch + first, count, rays, hits + first, verdicts + first);

@@ -12,6 +12,7 @@
 
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -96,6 +97,12 @@ HWY_INLINE Segment segment_of(const Ray& ray) {
     return {ray.origin, ray.direction, ray.t_min, ray.t_max};
 }
 
+/// Hits at an infinite t do not count, and an infinite length times nothing would be no place. What
+/// is no number becomes the largest, too.
+HWY_INLINE float finite(float t) {
+    return std::min(std::numeric_limits<float>::max(), t);
+}
+
 /// Why a ray has no place in a face. Apart, as it is rare.
 template <Heading heading>
 HWY_NOINLINE Where where_else(const Grid& grid, const Segment& ray, const FaceMap& map) {
@@ -136,11 +143,8 @@ HWY_INLINE Where locate(const Grid& grid, const Segment& ray, Spot& spot) {
     }
     spot.face = &grid.faces[face];
     const FaceMap& map = spot.face->map;
-    // Hits at an infinite t do not count. The rounded direction of a shadow ray is as long up to
-    // 2^-23.
-    const float t = heading == Heading::to_emitter
-                        ? ray.t_min
-                        : std::min(ray.t_max, std::numeric_limits<float>::max());
+    // The rounded direction of a shadow ray is as long up to 2^-23.
+    const float t = finite(heading == Heading::to_emitter ? ray.t_min : ray.t_max);
     const auto length = hn::Mul(to_doubles(t), hn::Set(d, longest));
 
     bool is_inside = true;

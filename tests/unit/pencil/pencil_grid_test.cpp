@@ -15,6 +15,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -240,6 +241,32 @@ TEST(PencilGrid, TakesPointsThatAreNoPlacesForAMiss) {
         EXPECT_EQ(grid.occluded({0, 0, -infinity}), Verdict::miss);
         EXPECT_EQ(grid.occluded({0, 0, 3}), Verdict::miss);
     }
+}
+
+TEST(PencilGrid, HitsNothingBeyondAnyFiniteLength) {
+    Soup soup;
+    soup.add({{0, 0, 1}, {1, 0, 1}, {0, 1, 1}});
+    const Vec3 point{0.25F, 0.25F, 0};
+    const auto yes = [](const Ray&) { return true; };
+    for (const Pencil& pencil : {Pencil::parallel({0, 0, -1}), Pencil::radial({0, 0, 3})}) {
+        const PencilGrid grid = build_pencil_grid(soup.view(), pencil);
+        EXPECT_EQ(grid.occluded(point), Verdict::hit);
+        for (const float far : {infinity, std::numeric_limits<float>::quiet_NaN()}) {
+            EXPECT_EQ(grid.occluded(point, far), Verdict::miss);
+            const std::vector<Vec3> points(40, point);
+            const auto shadowed = std::make_unique<bool[]>(points.size());
+            grid.occluded(points, far, {}, {shadowed.get(), points.size()}, yes);
+            EXPECT_TRUE(
+                std::none_of(shadowed.get(), shadowed.get() + points.size(), std::identity())
+            );
+        }
+    }
+    const PencilGrid grid = build_pencil_grid(soup.view(), Pencil::parallel({0, 0, -1}));
+    const Ray endless{.origin = point, .direction = {0, 0, 1}, .t_min = infinity};
+    ASSERT_TRUE(grid.covers(endless));
+    Hit hit;
+    EXPECT_EQ(grid.any_hit(endless), Verdict::miss);
+    EXPECT_EQ(grid.closest_hit(endless, hit), Verdict::miss);
 }
 
 /// Points in, on and around the mesh, and toward its vertices and edges.
