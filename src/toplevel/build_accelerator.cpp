@@ -241,7 +241,9 @@ private:
         }
         choice.predictions.push_back({StructureKind::none, 0, ray_ns(result_.global_tree_, area)});
         if (structure.pencil) {
-            choice.predictions.push_back(predict_grid(triangles, executor_));
+            choice.predictions.push_back(
+                predict_grid(structure.pencil->kind(), triangles, executor_)
+            );
             choice.predictions.push_back(
                 predict_inversion(structure.pencil->kind(), triangles_.size(), executor_)
             );

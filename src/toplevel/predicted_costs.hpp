@@ -21,10 +21,12 @@ namespace raywise::detail {
            test_ns * static_cast<double>(counts.prims);
 }
 
-/// A pencil grid over so many triangles.
-[[nodiscard]] inline StructurePrediction predict_grid(double triangles, const Executor& executor) {
-    constexpr double build_ns = 250; // per triangle, serial
-    constexpr double ray_ns = 60;
+/// A pencil grid over so many triangles. Six faces list more than one does.
+[[nodiscard]] inline StructurePrediction
+predict_grid(Pencil::Kind kind, double triangles, const Executor& executor) {
+    const bool is_parallel = kind == Pencil::Kind::parallel;
+    const double build_ns = is_parallel ? 1000 : 2000; // per triangle, serial
+    const double ray_ns = is_parallel ? 85 : 125;
     return {StructureKind::pencil_grid, build_ns * triangles / executor.threads(), ray_ns};
 }
 

@@ -74,15 +74,12 @@ HWY_INLINE std::size_t face_of(const Vec3d& seen, double& longest) {
     const auto across = hn::Max(hn::Abs(x), hn::Abs(y));
     const auto size = hn::Max(across, hn::Abs(z));
     longest = hn::GetLane(size);
-    const auto is_one = [&](auto mask) HWY_ATTR {
-        return static_cast<std::size_t>(hn::GetLane(hn::IfThenElseZero(mask, hn::Set(d, 1.0))));
-    };
     const auto is_z = hn::Gt(hn::Abs(z), across);
     const auto is_x = hn::Ge(hn::Abs(x), size);
     const auto is_negative =
         hn::Lt(hn::IfThenElse(is_x, x, hn::IfThenElse(is_z, z, y)), hn::Zero(d));
-    const std::size_t axis_of_two = 2 * is_one(is_z) + is_one(hn::AndNot(is_x, hn::Not(is_z)));
-    return 2 * axis_of_two + is_one(is_negative);
+    const auto is_y = hn::Not(hn::Or(is_x, is_z));
+    return 4 * hn::CountTrue(d, is_z) + 2 * hn::CountTrue(d, is_y) + hn::CountTrue(d, is_negative);
 }
 
 /// A ray of the grid's pencil: of its direction only what `Heading` leaves open. Points to what is
