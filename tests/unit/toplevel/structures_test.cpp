@@ -4,6 +4,7 @@
 #include <raywise/core/error.hpp>
 #include <raywise/scene/generate.hpp>
 #include <raywise/toplevel/accelerator.hpp>
+#include <raywise/toplevel/pencil_of.hpp>
 #include <raywise/trace/all_hits.hpp>
 #include <raywise/trace/closest_hit.hpp>
 #include <raywise/trace/triangles.hpp>
@@ -68,6 +69,8 @@ TEST(Structures, EveryKindAnswersLikeOnePlainTree) {
         for (const InfluenceArea& area : areas) {
             if (rng.below(2) == 0) params.uses[area.name].structure = StructureKind::wide_tree;
             if (rng.below(4) == 0) params.uses[area.name].expected_rays = 0;
+            if (pencil_of(area) && rng.below(2) == 0)
+                params.uses[area.name].structure = StructureKind::pencil_grid;
             const bool is_parallel =
                 std::holds_alternative<ParallelDistribution>(area.distribution);
             if (is_parallel && rng.below(3) == 0)
