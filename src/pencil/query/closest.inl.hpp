@@ -57,13 +57,13 @@ public:
                 add(id);
                 continue;
             }
-            if ((marks.sure & bits & (0U - bits)) != 0 &&
-                (waiting_ == no_prim || depths.greatest[i] < waiting_least_)) {
+            if ((marks.sure & bits & (0U - bits)) != 0) {
+                // Else it is nearer than the one that waits, which is forgotten.
+                if (depths.greatest[i] >= waiting_least_) decide_waiting();
                 waiting_ = id;
                 waiting_least_ = depths.least[i];
-            } else {
-                decide_waiting();
-                if (!add(id)) continue;
+            } else if (!add(id)) {
+                continue;
             }
             way.probe.deepest = std::min(way.probe.deepest, depths.greatest[i]);
         }

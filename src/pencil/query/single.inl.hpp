@@ -85,6 +85,15 @@ HWY_INLINE Verdict any_hit_along(const Grid& grid, const Ray& ray, Count count) 
     return any_hit_along<heading>(grid, segment_of(ray), itself, ray.excluded, count);
 }
 
+/// Whether the leaf's list has all that a ray from the emitter meets before the hit.
+template <Heading heading>
+HWY_NOINLINE bool is_listed(const Grid& grid, const Ray& ray, const Hit& hit, const Leaf& leaf) {
+    if (heading == Heading::to_emitter) return false;
+    Spot spot{};
+    const Segment until{ray.origin, ray.direction, ray.t_min, hit.t};
+    return locate<heading>(grid, until, spot) == Where::inside && is_complete(spot.deepest(), leaf);
+}
+
 template <Heading heading, class Count>
 HWY_INLINE Verdict closest_hit_along(const Grid& grid, const Ray& ray, Hit& hit, Count count) {
     count.query();
@@ -103,7 +112,11 @@ HWY_INLINE Verdict closest_hit_along(const Grid& grid, const Ray& ray, Hit& hit,
             do
                 closest.look(way);
             while (way.advance());
-            if (!is_complete(way.deepest(spot), leaf)) return Verdict::unknown;
+            if (!is_complete(way.deepest(spot), leaf)) {
+                const bool is_first =
+                    closest.finish(hit) && is_listed<heading>(grid, ray, hit, leaf);
+                return is_first ? Verdict::hit : Verdict::unknown;
+            }
         }
     }
     return closest.finish(hit) ? Verdict::hit : Verdict::miss;

@@ -175,12 +175,15 @@ HWY_INLINE void closest_hit_together(
         while (way.advance());
         prims[i] = closest.only_one();
         sure[surely] = static_cast<std::uint8_t>(i);
-        if (!is_complete(way.deepest(spot), leaves[i]))
-            verdicts[i] = Verdict::unknown;
-        else if (prims[i] != no_prim)
+        if (!is_complete(way.deepest(spot), leaves[i])) {
+            const bool is_first =
+                closest.finish(hits[i]) && is_listed<heading>(grid, batch[i], hits[i], leaves[i]);
+            verdicts[i] = is_first ? Verdict::hit : Verdict::unknown;
+        } else if (prims[i] != no_prim) {
             ++surely;
-        else if (closest.finish(hits[i]))
+        } else if (closest.finish(hits[i])) {
             verdicts[i] = Verdict::hit;
+        }
     }
     settle_together(grid, batch, std::span(sure).first(surely), prims, hits, verdicts);
 }
