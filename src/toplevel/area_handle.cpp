@@ -99,12 +99,16 @@ std::string AreaHandle::explain() const {
 }
 
 std::optional<Hit> AreaHandle::closest_hit(const Ray& ray) const {
-    if (is_gridded(ray)) {
-        Hit hit;
-        const Verdict verdict = grid_->closest_hit(ray, hit);
-        if (verdict == Verdict::hit) return hit;
-        if (verdict == Verdict::miss) return std::nullopt;
-    }
+    if (!is_gridded(ray)) return closest_hit_by_trees(ray);
+    // One result from the first write to the last reader: copies of what was just written stall.
+    std::optional<Hit> hit;
+    const Verdict verdict = grid_->closest_hit(ray, hit.emplace());
+    if (verdict == Verdict::miss) hit.reset();
+    if (verdict == Verdict::unknown) hit = closest_hit_by_trees(ray);
+    return hit;
+}
+
+std::optional<Hit> AreaHandle::closest_hit_by_trees(const Ray& ray) const {
     if (const WideBvh* whole = whole_tree()) return raywise::closest_hit(*whole, ray);
     SilentQuery nobody;
     return closest_hit(ray, nobody);

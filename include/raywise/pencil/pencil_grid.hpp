@@ -61,8 +61,8 @@ public:
     [[nodiscard]] Verdict
     occluded(const Vec3& point, float t_min = 0, PrimId excluded = no_prim) const;
 
-    /// The closest hit in [t_min, t_max], written to `hit` when there is one. `ray` must be
-    /// covered.
+    /// The closest hit in [t_min, t_max]. `hit` is Hit{} for a miss, and anything when it is
+    /// unknown. `ray` must be covered.
     [[nodiscard]] Verdict closest_hit(const Ray& ray, Hit& hit) const;
     [[nodiscard]] Verdict closest_hit(const Ray& ray, Hit& hit, PencilGridCounts& counts) const;
 

@@ -336,6 +336,8 @@ private:
         return is_parallel ? ray.t_min >= 0 && ray.t_min <= ray.t_max : is_valid(ray);
     }
 
+    [[nodiscard]] std::optional<Hit> closest_hit_by_trees(const Ray& ray) const;
+
     /// Whether the area's grid covers every ray.
     [[nodiscard]] bool is_gridded(std::span<const Ray> rays) const;
 

@@ -35,11 +35,14 @@ HWY_INLINE bool is_hit(const Grid& grid, const Ray& ray, PrimId id, Count count)
 }
 
 /// The closest hit so far. A reference that is surely met, and before all others, waits: its t is
-/// computed only when no closer one is found.
+/// computed only when no closer one is found. The hit is written in place: copies of what was just
+/// written stall.
 template <Heading heading, class Count>
 class Closest {
 public:
-    Closest(const Grid& grid, const Ray& ray, Count count) : grid_(grid), ray_(ray), count_(count) {
+    Closest(const Grid& grid, const Ray& ray, Hit& best, Count count)
+        : grid_(grid), ray_(ray), best_(best), count_(count) {
+        best_ = Hit{};
         best_.t = ray.t_max;
     }
 
@@ -83,9 +86,10 @@ public:
     /// The only triangle that may be hit first, when that is known; else no_prim.
     [[nodiscard]] PrimId only_one() const { return best_.prim == no_prim ? waiting_ : no_prim; }
 
-    [[nodiscard]] HWY_INLINE bool finish(Hit& hit) {
+    /// Whether there is one; else the hit is Hit{}.
+    [[nodiscard]] HWY_INLINE bool finish() {
         decide_waiting();
-        if (best_.prim != no_prim) hit = best_;
+        if (best_.prim == no_prim) best_ = Hit{};
         return best_.prim != no_prim;
     }
 
@@ -94,20 +98,23 @@ private:
     HWY_INLINE void decide_waiting() {
         if (waiting_ == no_prim) return;
         const PrimId id = std::exchange(waiting_, no_prim);
-        Hit hit;
-        if (!settle(ray_, grid_.triangles[id], id, hit)) [[unlikely]] {
-            add(id);
-            return;
-        }
+        const Triangle triangle = grid_.triangles[id];
         count_.prim();
         count_.decided();
-        if (best_.prim == no_prim || is_closer(hit, best_)) best_ = hit;
+        if (best_.prim == no_prim) {
+            if (settle(ray_, triangle, id, best_)) [[likely]]
+                return;
+            best_ = Hit{};
+            best_.t = ray_.t_max;
+        }
+        const auto hit = decide(grid_, ray_, id, best_.t);
+        if (hit && (best_.prim == no_prim || is_closer(*hit, best_))) best_ = *hit;
     }
 
     const Grid& grid_;
     const Ray& ray_;
+    Hit& best_;
     Count count_;
-    Hit best_{};
     PrimId waiting_ = no_prim;
     std::int16_t waiting_least_ = 0;
 };

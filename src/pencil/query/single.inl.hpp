@@ -101,7 +101,7 @@ HWY_INLINE Verdict closest_hit_along(const Grid& grid, const Ray& ray, Hit& hit,
     const Where where = locate<heading>(grid, segment_of(ray), spot);
     if (where == Where::unknown) [[unlikely]]
         return is_valid(ray) ? Verdict::unknown : Verdict::miss;
-    Closest<heading, Count> closest(grid, ray, count);
+    Closest<heading, Count> closest(grid, ray, hit, count);
     for (const PrimId id : grid.near)
         closest.add(id);
     if (where == Where::inside) {
@@ -113,13 +113,12 @@ HWY_INLINE Verdict closest_hit_along(const Grid& grid, const Ray& ray, Hit& hit,
                 closest.look(way);
             while (way.advance());
             if (!is_complete(way.deepest(spot), leaf)) {
-                const bool is_first =
-                    closest.finish(hit) && is_listed<heading>(grid, ray, hit, leaf);
+                const bool is_first = closest.finish() && is_listed<heading>(grid, ray, hit, leaf);
                 return is_first ? Verdict::hit : Verdict::unknown;
             }
         }
     }
-    return closest.finish(hit) ? Verdict::hit : Verdict::miss;
+    return closest.finish() ? Verdict::hit : Verdict::miss;
 }
 
 } // namespace raywise::pencil_detail::HWY_NAMESPACE

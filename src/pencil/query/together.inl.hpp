@@ -168,7 +168,7 @@ HWY_INLINE void closest_hit_together(
     for (std::size_t k = 0; k < kept; ++k) {
         const std::size_t i = open[k];
         const Spot spot = rays.spot(i);
-        Closest<heading, NoCounts> closest(grid, batch[i], NoCounts{});
+        Closest<heading, NoCounts> closest(grid, batch[i], hits[i], NoCounts{});
         Walk way = walk(grid, leaves[i], spot);
         do
             closest.look(way);
@@ -177,11 +177,11 @@ HWY_INLINE void closest_hit_together(
         sure[surely] = static_cast<std::uint8_t>(i);
         if (!is_complete(way.deepest(spot), leaves[i])) {
             const bool is_first =
-                closest.finish(hits[i]) && is_listed<heading>(grid, batch[i], hits[i], leaves[i]);
+                closest.finish() && is_listed<heading>(grid, batch[i], hits[i], leaves[i]);
             verdicts[i] = is_first ? Verdict::hit : Verdict::unknown;
         } else if (prims[i] != no_prim) {
             ++surely;
-        } else if (closest.finish(hits[i])) {
+        } else if (closest.finish()) {
             verdicts[i] = Verdict::hit;
         }
     }
