@@ -33,10 +33,10 @@ struct Range {
 };
 
 struct Ranges {
-    Range u, v, z;
+    Range u, v, key;
 };
 
-Ranges measure(const std::vector<RawPiece>& pieces, bool is_radial, const Executor& executor) {
+Ranges measure(const std::vector<RawPiece>& pieces, const Executor& executor) {
     std::vector<Ranges> parts((pieces.size() + chunk - 1) / chunk);
     executor.for_each_chunk(pieces.size(), chunk, [&](std::size_t begin, std::size_t end) {
         Ranges ranges;
@@ -44,8 +44,7 @@ Ranges measure(const std::vector<RawPiece>& pieces, bool is_radial, const Execut
             for (std::size_t k = 0; k < 3; ++k) {
                 ranges.u.add(pieces[i].u[k]);
                 ranges.v.add(pieces[i].v[k]);
-                const auto key = static_cast<double>(pieces[i].key[k]);
-                ranges.z.add(is_radial ? -1 / key : key);
+                ranges.key.add(static_cast<double>(pieces[i].key[k]));
             }
         parts[begin / chunk] = ranges;
     });
@@ -53,7 +52,7 @@ Ranges measure(const std::vector<RawPiece>& pieces, bool is_radial, const Execut
     for (const Ranges& part : parts) {
         all.u.add(part.u);
         all.v.add(part.v);
-        all.z.add(part.z);
+        all.key.add(part.key);
     }
     return all;
 }
@@ -71,9 +70,9 @@ double scale(
     FaceMap& map = face.map;
     // Never thinner than what rounding leaves of the coordinates.
     const double magnitude = is_radial ? 1 : greatest_coordinate;
-    const double least = std::max(magnitude * 0x1p-24, 0x1p-140);
-    const double wide = std::max(ranges.u.size(), least);
-    const double high = std::max(ranges.v.size(), least);
+    const double thinnest = std::max(magnitude * 0x1p-24, 0x1p-140);
+    const double wide = std::max(ranges.u.size(), thinnest);
+    const double high = std::max(ranges.v.size(), thinnest);
     const double cells = std::max(1.0, static_cast<double>(pieces) / cell_size);
     const double side = std::sqrt(wide / cells * high);
     const auto cells_along = [&](double extent) {
@@ -93,11 +92,16 @@ double scale(
     map.offset_v = ranges.v.least * map.scale_v - border;
     map.slope_u *= map.scale_u;
     map.slope_v *= map.scale_v;
-    const double farthest = std::max(std::abs(ranges.z.least), std::abs(ranges.z.greatest));
-    const double deep = std::max({ranges.z.size(), farthest * 0x1p-20, 0x1p-90});
+    // Keys may be off. Never so thin that double arithmetic with them, or with a parallel reach of
+    // 2^8 times as much, would be off by a unit.
+    const double largest = std::max(std::abs(ranges.key.least), std::abs(ranges.key.greatest));
+    const double least_key = ranges.key.least - largest * key_rounding;
+    const double greatest_key = ranges.key.greatest + largest * key_rounding;
+    const double deep = std::max({greatest_key - least_key, largest * 0x1p-14, 0x1p-90});
     map.depth_scale = (deepest - shallowest - 8) / deep;
-    map.depth_offset = shallowest - ranges.z.least * map.depth_scale;
+    map.depth_offset = shallowest - least_key * map.depth_scale;
     map.depth_slack = 1 + 0x1p-148 * static_cast<double>(map.speed) * map.depth_scale;
+    map.front = is_radial ? -1 / least_key : least_key;
     set_lanes(map, is_radial);
     const double greatest = is_radial ? 2 : 4 * map.reach;
     return 0x1p-49 * greatest * std::max(map.scale_u, map.scale_v);
@@ -245,7 +249,7 @@ std::unique_ptr<BuiltFace> build_face(
     built->face.map = unscaled;
     const double rounding = scale(
         built->face,
-        measure(pieces, is_radial, executor),
+        measure(pieces, executor),
         pieces.size(),
         is_radial,
         records.greatest,

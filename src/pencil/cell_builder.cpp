@@ -19,8 +19,10 @@ constexpr std::int32_t never = std::numeric_limits<std::int32_t>::max();
 /// triangles would be listed again and again.
 constexpr double worthwhile_growth = 2.5;
 
-/// Depths of a list are within this, and what planes add to it.
-constexpr std::int32_t greatest_depth = 24000;
+/// number * 2^shift
+double scaled(double number, unsigned shift) {
+    return number * static_cast<double>(std::uint64_t{1} << shift);
+}
 
 std::size_t level_of(int shift) {
     return static_cast<std::size_t>((top_shift - shift) / split_bits);
@@ -35,24 +37,23 @@ Cell CellBuilder::build(std::span<const std::uint32_t> pieces, const Window& win
         const Piece& piece = pieces_[index];
         const Footprint place = footprint(piece, window);
         if (place.least_u > place.greatest_u) continue;
-        const EdgeRows edges = edges_.rows(piece, place, window);
-        if (edges.is_missed) continue;
+        const SeenTriangle seen = edges_.see(piece, place, window);
+        if (seen.edges.is_missed) continue;
         double least = place.least_key;
         double greatest = place.greatest_key;
         if (is_radial_) {
-            // The keys were rounded to float.
-            least = -1 / least * (1 - 0x1p-20);
-            greatest = -1 / greatest * (1 + 0x1p-20);
+            // Both are below zero.
+            least *= 1 + key_rounding;
+            greatest *= 1 - key_rounding;
         }
         references.push_back(
             {place,
-             plane_of(piece, place, window),
+             seen.depth,
              std::max(depth_units(map_, least) - 1, 0),
              depth_units(map_, greatest) + 1,
-             edges,
+             seen.edges,
              index,
-             piece.prim,
-             false}
+             piece.prim}
         );
     }
     Cell cell;
@@ -61,7 +62,7 @@ Cell CellBuilder::build(std::span<const std::uint32_t> pieces, const Window& win
         return cell;
     }
     const std::int32_t cover = cull(references);
-    if (cover != never) cell.cover = static_cast<std::uint16_t>(cover);
+    if (cover != never) cell.cover = static_cast<std::uint32_t>(cover) & Cell::never;
     set_near(cell, references, window);
     if (references.size() > params_.leaf_size && shift > place_bits &&
         split(references, window, shift, cell))
@@ -70,7 +71,8 @@ Cell CellBuilder::build(std::span<const std::uint32_t> pieces, const Window& win
     return cell;
 }
 
-/// Drops what two triangles that fill the window hide; returns their depth in 256 units, or never.
+/// Drops what two triangles that fill the window hide; returns their depth as a cell's cover, or
+/// never.
 std::int32_t CellBuilder::cull(std::vector<Reference>& references) {
     // One of the two may be the triangle that a ray starts on and does not hit.
     std::int32_t first = never;
@@ -89,9 +91,9 @@ std::int32_t CellBuilder::cull(std::vector<Reference>& references) {
         }
     }
     if (second == never) return never;
-    const std::int32_t cover = second >> 8;
+    const std::int32_t cover = second >> cover_shift;
     const auto is_hidden = [&](const Reference& reference) {
-        return (reference.least >> 8) > cover;
+        return (reference.least >> cover_shift) > cover;
     };
     const auto kept = std::remove_if(references.begin(), references.end(), is_hidden);
     statistics_.culled += static_cast<std::size_t>(references.end() - kept);
@@ -171,7 +173,6 @@ void CellBuilder::merge_parts(std::vector<Reference>& references) const {
             other->edges = reference.edges;
             other->piece = reference.piece;
         }
-        other->is_merged = true;
     }
     references.resize(kept);
 }
@@ -183,110 +184,39 @@ void CellBuilder::add_list(std::vector<Reference>& references, const Window& win
     std::sort(references.begin(), references.end(), [](const Reference& a, const Reference& b) {
         return std::tie(a.least, a.prim) < std::tie(b.least, b.prim);
     });
-    const std::int32_t first_depth = references.front().least;
-    int depth_shift = 0;
-    while (((references.back().least - first_depth) >> depth_shift) > 2 * greatest_depth)
-        ++depth_shift;
-    const std::int32_t base = first_depth + (greatest_depth << depth_shift);
-
     ++statistics_.leaves;
     statistics_.references += count;
     const std::size_t at = grow(list_bytes(count));
     cell.link = static_cast<std::uint32_t>(at / 16);
     const ListHead head{
-        base,
-        static_cast<std::uint32_t>(count) | static_cast<std::uint32_t>(depth_shift) << 26U |
-            (cell.cover != Cell::never ? 1U << 31U : 0U)
+        static_cast<std::uint32_t>(count) | (cell.cover != Cell::never ? 1U << 31U : 0U)
     };
     std::byte* to = lists_.data() + at;
     std::memcpy(to, &head, sizeof head);
     to += sizeof head;
     for (std::size_t first = 0; first < count; first += chunk_size) {
         if (first > 0) {
-            const auto least =
-                static_cast<std::int16_t>((references[first].least - base) >> depth_shift);
-            std::memcpy(to, &least, sizeof least);
+            std::memcpy(to, &references[first].least, chunk_head_bytes);
             to += chunk_head_bytes;
         }
         const std::size_t size = std::min(chunk_size, count - first);
         const std::size_t stride = padded(size);
         for (std::size_t i = 0; i < size; ++i) {
             const Reference& reference = references[first + i];
-            const DepthRows depths = depth_rows(reference, window, base, depth_shift);
-            const auto put = [&](std::size_t row, std::int16_t value) {
-                std::memcpy(to + 2 * (row * stride + i), &value, sizeof value);
+            const auto put = [&](std::size_t row, auto value) {
+                std::memcpy(to + 2 * row * stride + sizeof value * i, &value, sizeof value);
             };
-            for (std::size_t row = 0; row < 9; ++row)
+            for (std::size_t row = 0; row < edge_rows; ++row)
                 put(row, reference.edges.values[row]);
-            for (std::size_t row = 0; row < 4; ++row)
-                put(depth_u + row, depths[row]);
-            std::memcpy(
-                to + 2 * list_rows * stride + sizeof(PrimId) * i, &reference.prim, sizeof(PrimId)
-            );
+            const DepthRows depths = depth_rows(reference, window);
+            put(depth_u, depths.u);
+            put(depth_v, depths.v);
+            put(depth_base, depths.base);
+            put(prim_row, reference.prim);
+            put(depth_shift, depths.shift);
         }
         to += chunk_bytes(size);
     }
-}
-
-/// How far, in units, the depth -1 / key rises above its tangent in the middle of the bounds, whose
-/// slopes are `scale` times those of the key. It is convex, so at a corner.
-double CellBuilder::bulge(
-    const KeyPlane& plane,
-    const Footprint& bounds,
-    std::int32_t margin,
-    double scale
-) const {
-    const double half_u = 0.5 * (bounds.greatest_u + 1 - bounds.least_u) + margin + 3;
-    const double half_v = 0.5 * (bounds.greatest_v + 1 - bounds.least_v) + margin + 3;
-    const double middle = plane.at(
-        0.5 * (bounds.least_u + bounds.greatest_u + 1),
-        0.5 * (bounds.least_v + bounds.greatest_v + 1)
-    );
-    double most = 0;
-    for (const double to_u : {-half_u, half_u})
-        for (const double to_v : {-half_v, half_v}) {
-            const double rise = plane.slope_u * to_u + plane.slope_v * to_v;
-            const double key = middle + rise;
-            if (!(key < 0.25 * middle)) return std::numeric_limits<double>::infinity();
-            const double z = -1 / key;
-            const double depth = (z + 1 / middle) * map_.depth_scale;
-            most = std::max(most, depth - rise * scale + 0x1p-18 * z * map_.depth_scale);
-        }
-    return most;
-}
-
-/// The plane of a parallel piece; of a radial one, whose depth -1 / key is a convex function of the
-/// place, the tangent in the middle of its bounds, which is nowhere beyond.
-CellBuilder::Plane
-CellBuilder::plane_of(const Piece& piece, const Footprint& bounds, const Window& window) const {
-    const auto plane = key_plane(piece);
-    if (!plane) return {};
-    const double middle_u = 0.5 * (bounds.least_u + bounds.greatest_u + 1);
-    const double middle_v = 0.5 * (bounds.least_v + bounds.greatest_v + 1);
-    double middle = plane->at(middle_u, middle_v);
-    double scale = map_.depth_scale;
-    double error = 2;
-    if (is_radial_) {
-        if (!(middle < 0)) return {};
-        const double z = -1 / middle;
-        error += z * 0x1p-19 * scale;
-        scale *= z * z;
-        middle = z;
-    }
-    const double side = window.side;
-    Plane tangent{
-        depth_units_of(map_, middle) - error,
-        plane->slope_u * scale * side,
-        plane->slope_v * scale * side,
-        0,
-        true
-    };
-    const double rounding = (std::abs(tangent.slope_u) + std::abs(tangent.slope_v)) * 0x1p-20;
-    tangent.middle -= rounding;
-    tangent.above = 2 * (error + rounding);
-    if (is_radial_) tangent.above += bulge(*plane, bounds, piece.margin, scale);
-    tangent.is_known = std::abs(tangent.middle) < 0x1p29;
-    return tangent;
 }
 
 namespace {
@@ -332,14 +262,14 @@ void CellBuilder::set_near(
         }
     }
     if (widest == nullptr) return;
-    const double steepest =
-        std::max(std::abs(widest->plane.slope_u), std::abs(widest->plane.slope_v));
-    int shift = 0;
-    while (std::ldexp(16000.0, shift) < steepest)
-        if (++shift > 12) return;
-    const double unit = std::ldexp(1.0, shift);
-    const double whole_u = nearest(widest->plane.slope_u / unit);
-    const double whole_v = nearest(widest->plane.slope_v / unit);
+    // Over a whole cell.
+    const double steepest = 2 * std::max(std::abs(widest->plane.u), std::abs(widest->plane.v));
+    std::uint32_t shift = 0;
+    while (scaled(16000, shift) < steepest)
+        if (++shift > 14) return;
+    const double unit = scaled(1, shift);
+    const double whole_u = nearest(2 * widest->plane.u / unit);
+    const double whole_v = nearest(2 * widest->plane.v / unit);
     const double slope_u = whole_u * unit;
     const double slope_v = whole_v * unit;
     double base = std::numeric_limits<double>::infinity();
@@ -349,68 +279,56 @@ void CellBuilder::set_near(
         const double level = reference.least - start - std::abs(slope_u) * span.half_u -
                              std::abs(slope_v) * span.half_v;
         double lowest = level;
-        if (const Plane& plane = reference.plane; plane.is_known)
+        if (const DepthPlane& plane = reference.plane; plane.is_known) {
+            const double middle = plane.at + plane.u * (2 * span.at_u - 1) +
+                                  plane.v * (2 * span.at_v - 1) - plane.error;
             lowest = std::max(
                 lowest,
-                plane.middle - start - std::abs(plane.slope_u - slope_u) * span.half_u -
-                    std::abs(plane.slope_v - slope_v) * span.half_v
+                middle - start - std::abs(2 * plane.u - slope_u) * span.half_u -
+                    std::abs(2 * plane.v - slope_v) * span.half_v
             );
+        }
         base = std::min(base, lowest - (std::abs(slope_u) + std::abs(slope_v)) * span.off);
     }
     base = std::floor(base) - 2;
-    if (!(base + 0.5 * (slope_u + slope_v) > cell.base) || !(std::abs(base) < 0x1p29)) return;
+    if (!(base + 0.5 * (slope_u + slope_v) > cell.base) || !(std::abs(base) < 0x1p30)) return;
     cell.base = static_cast<std::int32_t>(base);
     cell.slope_u = static_cast<std::int16_t>(whole_u);
     cell.slope_v = static_cast<std::int16_t>(whole_v);
-    cell.shift = static_cast<std::uint16_t>(shift);
+    cell.shift = shift & 0xFFU;
 }
 
-CellBuilder::DepthRows CellBuilder::depth_rows(
-    const Reference& reference,
-    const Window& window,
-    std::int32_t base,
-    int depth_shift
-) const {
-    const auto unit = static_cast<double>(std::int64_t{1} << depth_shift);
-    const double flat = (reference.least - base) >> depth_shift;
-    const double greatest = std::ceil((reference.greatest - base) / unit) + 1;
-    const bool is_endless = pieces_[reference.piece].reaches_apex;
-    const auto rows = [&](double slope_u, double slope_v, double start, double thick) {
-        return DepthRows{
-            static_cast<std::int16_t>(slope_u),
-            static_cast<std::int16_t>(slope_v),
-            // Modulo 2^16: right again where the triangle is.
-            static_cast<std::int16_t>(static_cast<std::int32_t>(start)),
-            is_endless ? endless : static_cast<std::int16_t>(std::min(thick, double{endless}))
-        };
+/// The plane of the triangle, or its least and greatest depth in the cell, whichever is closer.
+CellBuilder::DepthRows
+CellBuilder::depth_rows(const Reference& reference, const Window& window) const {
+    const Piece& piece = pieces_[reference.piece];
+    const double least = piece.reaches_apex ? 0 : reference.least;
+    const double greatest = piece.reaches_apex ? deepest : reference.greatest;
+    const double middle = std::floor(0.5 * (least + greatest));
+    std::uint8_t shift = 0;
+    while (scaled(depth_doubt - 0.5, shift) < greatest - middle)
+        ++shift;
+    const DepthRows level{0, 0, static_cast<std::int32_t>(middle), shift};
+
+    const DepthPlane& plane = reference.plane;
+    const double steep = std::abs(plane.u) + std::abs(plane.v);
+    if (!plane.is_known) return level;
+    // Between the apex and the nearest pieces, where rays may begin.
+    if (piece.reaches_apex && plane.at - steep - plane.error < shallowest) return level;
+    const double place_error = 0x1p-14 + (piece.margin + 3) / (0.5 * window.side);
+    const double error = plane.error + steep * place_error + 1;
+    // Rounding a slope takes off at most 1/2, rounding its product with a place as much: 2 in all.
+    std::uint8_t plane_shift = 0;
+    while (scaled(16000, plane_shift) < steep || scaled(depth_doubt - 2.5, plane_shift) < error)
+        if (++plane_shift >= shift) return level;
+    // Far from the triangle, its plane may be anywhere.
+    if (!(steep < 0x1p29 && std::abs(plane.at) < 0x1p30)) return level;
+    return {
+        static_cast<std::int16_t>(nearest(plane.u / scaled(1, plane_shift))),
+        static_cast<std::int16_t>(nearest(plane.v / scaled(1, plane_shift))),
+        static_cast<std::int32_t>(nearest(plane.at)),
+        plane_shift
     };
-    const DepthRows constant = rows(0, 0, flat, greatest - flat);
-    // The plane of one snapped part says nothing sure of the others.
-    if (!reference.plane.is_known || reference.is_merged) return constant;
-    // Over half a cell, as places count.
-    const double slope_u = reference.plane.slope_u / (2 * unit);
-    const double slope_v = reference.plane.slope_v / (2 * unit);
-    const double whole_u = nearest(slope_u);
-    const double whole_v = nearest(slope_v);
-    if (!(std::abs(whole_u) < 32000 && std::abs(whole_v) < 32000)) return constant;
-    const Span span(reference.place, window, pieces_[reference.piece].margin);
-    // Two products are rounded, to half a depth each.
-    constexpr double rounding = 1;
-    const double slack = 2 * ((std::abs(whole_u) + std::abs(whole_v)) * span.off +
-                              std::abs(slope_u - whole_u) * span.half_u +
-                              std::abs(slope_v - whole_v) * span.half_v) +
-                         rounding;
-    const double at_middle = (reference.plane.middle - base) / unit - slack;
-    // A plane that leaves the numbers, or says less than the least depth, is of no use.
-    if (!(at_middle > flat)) return constant;
-    const double change =
-        2 * (std::abs(whole_u) * span.half_u + std::abs(whole_v) * span.half_v) + rounding;
-    const double lowest = at_middle - change;
-    if (!(lowest > -32000 && at_middle + change < 32000)) return constant;
-    const double start =
-        std::floor(at_middle - whole_u * (2 * span.at_u - 1) - whole_v * (2 * span.at_v - 1));
-    const double behind = std::ceil(reference.plane.above / unit + 2 * slack + rounding) + 1;
-    return rows(whole_u, whole_v, start, std::min(behind, greatest - std::floor(lowest)));
 }
 
 std::size_t CellBuilder::grow(std::size_t bytes) {

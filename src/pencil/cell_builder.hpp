@@ -42,38 +42,26 @@ public:
     [[nodiscard]] const PencilGridStatistics& statistics() const { return statistics_; }
 
 private:
-    /// A plane that is nowhere behind the reference's piece, in units.
-    struct Plane {
-        double middle = 0;  ///< depth at the middle of the bounds
-        double slope_u = 0; ///< over the cell
-        double slope_v = 0;
-        double above = 0; ///< the piece is nowhere farther behind the plane
-        bool is_known = false;
-    };
-
     struct Reference {
         Footprint place;
-        Plane plane;
+        DepthPlane plane;
         std::int32_t least;    ///< depth, in units
         std::int32_t greatest; ///< depth, in units
         EdgeRows edges;
         std::uint32_t piece;
         PrimId prim;
-        bool is_merged; ///< whether it stands for several pieces of the triangle
     };
 
-    /// A reference's depths as a list has them: rows depth_u, depth_v, depth_at, thickness.
-    using DepthRows = std::array<std::int16_t, 4>;
+    /// A reference's depths as a list has them.
+    struct DepthRows {
+        std::int16_t u, v;
+        std::int32_t base;
+        std::uint8_t shift;
+    };
 
     Cell build(std::span<const std::uint32_t> pieces, const Window& window, int shift);
-    [[nodiscard]] Plane
-    plane_of(const Piece& piece, const Footprint& bounds, const Window& window) const;
-    [[nodiscard]] double
-    bulge(const KeyPlane& plane, const Footprint& bounds, std::int32_t margin, double scale) const;
     void set_near(Cell& cell, const std::vector<Reference>& references, const Window& window) const;
-    [[nodiscard]] DepthRows
-    depth_rows(const Reference& reference, const Window& window, std::int32_t base, int depth_shift)
-        const;
+    [[nodiscard]] DepthRows depth_rows(const Reference& reference, const Window& window) const;
     [[nodiscard]] std::int32_t cull(std::vector<Reference>& references);
     [[nodiscard]] bool
     split(const std::vector<Reference>& references, const Window& window, int shift, Cell& cell);

@@ -19,14 +19,46 @@ struct Line {
     [[nodiscard]] Line operator-() const { return {-u, -v, -at, error}; }
 };
 
-/// The lines of the three edges, positive inside, when the triangle's turn is sure.
+/// The lines of the three edges, positive inside, when the triangle's turn is sure; its plane, too.
 struct Lines {
     std::array<Line, 3> edges;
+    DepthPlane depth;
     bool is_sure;
 };
 
+/// `error` as far as inputs are off; adds what the last operations rounded, from numbers up to
+/// `largest`.
+DepthPlane plane_of(double at, double u, double v, double error, double largest) {
+    const double rounding = (largest + std::abs(at) + std::abs(u) + std::abs(v)) * 0x1p-46;
+    return {at, u, v, error + rounding, error + rounding < 0x1p30};
+}
+
 double greatest(const Vec3d& v) {
     return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+}
+
+/// With the barycentric weights e / area: depth = d0 + ((d1 - d0) e20 + (d2 - d0) e01) / area.
+DepthPlane parallel_plane(
+    const FaceMap& map,
+    const std::array<Vec3d, 3>& p,
+    const std::array<Line, 3>& edges,
+    double area
+) {
+    const auto depth = [&](std::size_t i) { return depth_units_of(map, p[i][map.axis] * map.sign); };
+    const double first = depth(0);
+    const double rise_1 = (depth(1) - first) / area;
+    const double rise_2 = (depth(2) - first) / area;
+    // Edges are off by `error`, and weights of a place inside, which are at most 1, by as much of
+    // the area.
+    const double error = 4 * (std::abs(rise_1) + std::abs(rise_2)) * edges[0].error;
+    return plane_of(
+        first + rise_1 * edges[2].at + rise_2 * edges[0].at,
+        rise_1 * edges[2].u + rise_2 * edges[0].u,
+        rise_1 * edges[2].v + rise_2 * edges[0].v,
+        error,
+        std::abs(first) + std::abs(map.depth_offset) +
+            (std::abs(rise_1 * edges[2].at) + std::abs(rise_2 * edges[0].at))
+    );
 }
 
 /// Places in units from the middle of the window, each within `off`.
@@ -59,10 +91,38 @@ Lines parallel_lines(
     }
     const double area = (x[1] - x[0]) * (y[2] - y[0]) - (y[1] - y[0]) * (x[2] - x[0]);
     lines.is_sure = std::abs(area) > error;
+    lines.depth = parallel_plane(map, p, lines.edges, area);
     if (area < 0)
         for (Line& line : lines.edges)
             line = -line;
     return lines;
+}
+
+/// The normals of the edges' planes add up to that of the triangle's: 1 / z = (e0 + e1 + e2) / turn.
+DepthPlane radial_plane(
+    const FaceMap& map,
+    const std::array<Line, 3>& edges,
+    double turn,
+    double turn_error
+) {
+    const auto [a, b, c] = edges;
+    const double factor = -map.depth_scale / turn;
+    const double at = factor * (a.at + b.at + c.at);
+    const double u = factor * (a.u + b.u + c.u);
+    const double v = factor * (a.v + b.v + c.v);
+    const double size = std::abs(at) + std::abs(u) + std::abs(v);
+    const double error = 2 * (std::abs(factor) * (a.error + b.error + c.error) +
+                              size * (turn_error / std::abs(turn)));
+    return plane_of(
+        map.depth_offset + at,
+        u,
+        v,
+        error,
+        std::abs(map.depth_offset) +
+            std::abs(factor) * (std::abs(a.at) + std::abs(b.at) + std::abs(c.at) + std::abs(a.u) +
+                                std::abs(b.u) + std::abs(c.u) + std::abs(a.v) + std::abs(b.v) +
+                                std::abs(c.v))
+    );
 }
 
 /// The planes through the apex and an edge, cut by the plane z = 1 of the face. So they are right
@@ -94,7 +154,9 @@ Lines radial_lines(
         };
     }
     const double turn = dot(cross(q[0], q[1] - q[0]), q[2] - q[0]);
-    lines.is_sure = std::abs(turn) > 0x1p-47 * greatest(q[0]) * greatest(q[1]) * greatest(q[2]);
+    const double turn_error = 0x1p-47 * greatest(q[0]) * greatest(q[1]) * greatest(q[2]);
+    lines.is_sure = std::abs(turn) > turn_error;
+    lines.depth = radial_plane(map, lines.edges, turn, turn_error);
     if (turn < 0)
         for (Line& line : lines.edges)
             line = -line;
@@ -197,7 +259,8 @@ EdgeLines::EdgeLines(const FaceMap& map, bool is_radial, const Records& records,
     }
 }
 
-EdgeRows EdgeLines::rows(const Piece& piece, const Footprint& bounds, const Window& window) const {
+SeenTriangle
+EdgeLines::see(const Piece& piece, const Footprint& bounds, const Window& window) const {
     const float* r = records_ + to_index(piece.prim) * record_floats;
     std::array<Vec3d, 3> vertices{};
     for (std::size_t i = 0; i < 3; ++i)
@@ -207,14 +270,17 @@ EdgeRows EdgeLines::rows(const Piece& piece, const Footprint& bounds, const Wind
     const double place_error = piece.margin / (window.side * 0.5);
     // The bounds of a part say nothing of the other parts.
     if (!lines.is_sure)
-        return !piece.is_part && is_small(bounds, window) ? box(bounds, window)
-                                                          : strip(lines, place_error);
+        return {
+            !piece.is_part && is_small(bounds, window) ? box(bounds, window)
+                                                       : strip(lines, place_error),
+            {}
+        };
     EdgeRows rows{};
     for (std::size_t i = 0; i < 3; ++i) {
         const int most = put(lines.edges[i], place_error, rows.values.data() + 3 * i);
         rows.is_missed = rows.is_missed || most <= -edge_doubt;
     }
-    return rows;
+    return {rows, lines.depth};
 }
 
 } // namespace raywise::pencil_detail

@@ -1,4 +1,4 @@
-// The edges of a triangle as a cell's list has them.
+// The edges and the plane of a triangle as a cell sees them.
 #pragma once
 
 #include "pencil/face_pieces.hpp"
@@ -19,14 +19,28 @@ struct EdgeRows {
     bool is_missed; ///< whether no ray of the cell meets the triangle: nothing to list
 };
 
+/// A ray that meets the triangle at the place (X, Y), in half cells from the middle, does so within
+/// `error` of the depth at + u X + v Y, in units, when that is known.
+struct DepthPlane {
+    double at = 0, u = 0, v = 0;
+    double error = 0;
+    bool is_known = false;
+};
+
+/// A triangle as a cell sees it.
+struct SeenTriangle {
+    EdgeRows edges;
+    DepthPlane depth;
+};
+
 /// Edges of the triangles of a face, whole triangles also where the face's bounds cut them.
 class EdgeLines {
 public:
     EdgeLines(const FaceMap& map, bool is_radial, const Records& records, Vec3d apex);
 
     /// Of the triangle whose piece has these bounds in the cell `window`.
-    [[nodiscard]] EdgeRows
-    rows(const Piece& piece, const Footprint& bounds, const Window& window) const;
+    [[nodiscard]] SeenTriangle
+    see(const Piece& piece, const Footprint& bounds, const Window& window) const;
 
 private:
     const FaceMap& map_;

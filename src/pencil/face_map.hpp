@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 
 namespace raywise::pencil_detail {
 
@@ -13,29 +14,29 @@ inline void set_lanes(FaceMap& map, bool is_radial) {
     const auto column = [&](int axis) -> FaceMap::Lanes& {
         return map.columns[static_cast<std::size_t>(axis)];
     };
-    const double depth = map.sign * map.depth_scale;
+    const double depth = is_radial ? 0 : map.sign * map.depth_scale;
     map.columns = {};
     column(map.axis) = {-map.slope_u, -map.slope_v, depth, depth};
     column(map.axis_u)[0] = map.scale_u;
     column(map.axis_v)[1] = map.scale_v;
-    if (is_radial) column(map.axis) = {0, 0, depth, depth};
     map.columns[3] = {
         -map.offset_u,
         -map.offset_v,
         map.depth_offset + map.depth_slack,
         map.depth_offset - map.depth_slack
     };
+    if (is_radial) map.dividend = {0, 0, -map.depth_scale, -map.depth_scale};
     constexpr double rounding_of_t = 0x1p-21;
-    const double speed =
-        is_radial ? map.depth_scale : static_cast<double>(map.speed) * map.depth_scale;
+    const double speed = is_radial ? 1 : static_cast<double>(map.speed) * map.depth_scale;
     const double less = speed * (1 - rounding_of_t);
     const double more = speed * (1 + rounding_of_t);
     map.toward = {0, 0, -less, -more};
     map.away = {0, 0, more, less};
-    const double near = map.depth_offset - map.reach * map.depth_scale;
-    const double far = map.depth_offset + map.reach * map.depth_scale;
-    map.least = {0, 0, near, near};
-    map.limit = {map.size_u, map.size_v, far, far};
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    const double range = is_radial ? infinity : map.reach * map.depth_scale;
+    const double middle = is_radial ? 0 : map.depth_offset;
+    map.least = {0, 0, middle - range, middle - range};
+    map.limit = {map.size_u, map.size_v, middle + range, middle + range};
 }
 
 /// The nearest integer, ties to even, of an x below 2^51 in magnitude: without a call, as that of
@@ -45,9 +46,9 @@ inline double nearest(double x) {
     return (x + shift) - shift;
 }
 
-/// Unclamped. Monotone in z.
-inline double depth_units_of(const FaceMap& map, double z) {
-    return z * map.depth_scale + map.depth_offset;
+/// Unclamped. Monotone.
+inline double depth_units_of(const FaceMap& map, double key) {
+    return key * map.depth_scale + map.depth_offset;
 }
 
 /// Monotone. NaN is `deepest`.
@@ -56,8 +57,8 @@ inline std::int32_t limited_depth(double units) {
     return static_cast<std::int32_t>(limited > 0 ? limited : 0.0);
 }
 
-inline std::int32_t depth_units(const FaceMap& map, double z) {
-    return limited_depth(depth_units_of(map, z));
+inline std::int32_t depth_units(const FaceMap& map, double key) {
+    return limited_depth(depth_units_of(map, key));
 }
 
 } // namespace raywise::pencil_detail

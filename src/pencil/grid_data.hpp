@@ -22,25 +22,26 @@ inline constexpr std::size_t children = 16;
 inline constexpr std::int32_t most_cells_a_side = 4096;
 
 /// Depths, in units: [0, deepest]. Geometry has [shallowest, deepest], so that what lies before it
-/// is below, and a `cover` of 16 bits can say "never".
+/// is below, and a `cover` of 24 bits can say "never".
 inline constexpr std::int32_t shallowest = 256;
-inline constexpr std::int32_t deepest = (1 << 24) - 257;
+inline constexpr std::int32_t deepest = (1 << 30) - 257;
+inline constexpr int cover_shift = 6;
 
 /// A cell of the top grid, or one of 16 siblings. All it holds lies at or behind a plane: at the
 /// place (u, v), in 2^-15 of the cell, base + ((slope_u * u + slope_v * v) >> 15) * 2^shift, in
 /// units. A query that ends before meets nothing. One that comes from the emitter and ends beyond
-/// `cover`, in 256 units, meets at least two triangles. The lists are complete up to `cover`,
-/// itself included.
+/// `cover`, in 2^cover_shift units, meets at least two triangles. The lists are complete up to
+/// `cover`, itself included.
 struct Cell {
     std::uint32_t link = 0; ///< where its list or children are, in 16 bytes; with `split_mark`
     std::int32_t base = nothing;
     std::int16_t slope_u = 0; ///< at most 2^14 in magnitude
     std::int16_t slope_v = 0;
-    std::uint16_t cover = never;
-    std::uint16_t shift = 0;
+    std::uint32_t cover : 24 = never;
+    std::uint32_t shift : 8 = 0;
 
-    static constexpr std::int32_t nothing = 1 << 30; ///< base of a cell without triangles
-    static constexpr std::uint16_t never = 0xFFFF;
+    static constexpr std::int32_t nothing = 0x7FFFFFFF; ///< base of a cell without triangles
+    static constexpr std::uint32_t never = 0xFFFFFF;
     static constexpr std::uint32_t split_mark = 0x80000000U;
 
     [[nodiscard]] bool is_empty() const { return base == nothing; }
@@ -48,47 +49,43 @@ struct Cell {
 static_assert(sizeof(Cell) == 16);
 
 /// The head of a list; chunks of 32 references follow, the last one shorter, a multiple of 4.
-/// Before every chunk but the first stand its least depth and two bytes of nothing. A chunk of n
-/// references is `list_rows` rows of n 16-bit numbers, see `Row`, and n ids. Depths count 2^shift
-/// units from base; references ascend by least depth.
+/// Before every chunk but the first stands its least depth, 32 bits. A chunk of n references is
+/// `edge_rows` and two rows of n 16-bit numbers, see `Row`, then n bases, n ids and n shifts.
+/// References ascend by least depth.
 struct ListHead {
-    std::int32_t base;  ///< units
-    std::uint32_t bits; ///< references, shift << 26, is_culled << 31
+    std::uint32_t bits; ///< references, is_culled << 31
 
     static constexpr std::size_t most_references = (1U << 26U) - 1;
 
     [[nodiscard]] std::size_t count() const { return bits & 0x3FFFFFFU; }
 
-    /// A depth counts 2^shift units from base.
-    [[nodiscard]] int shift() const { return static_cast<int>((bits >> 26U) & 31U); }
-
     /// Whether references behind the cell's `cover` were dropped.
     [[nodiscard]] bool is_culled() const { return (bits >> 31U) != 0; }
 };
-static_assert(sizeof(ListHead) == 8);
+static_assert(sizeof(ListHead) == 4);
 
 /// The rows of a chunk. A place (u, v) counts half cells from the middle of its cell, in 2^-15.
-/// Products with a place are times 2^-15, rounded; sums of edges saturate, sums of depths are
-/// modulo 2^16.
+/// Products with a place are times 2^-15, rounded; sums of edges saturate.
 ///
 /// Edge i of a reference's triangle has at the place the value e_i = edge_at[i] + edge_u[i] * u +
 /// edge_v[i] * v. A ray of the cell that meets the triangle has every e_i > -edge_doubt; one with
-/// every e_i >= edge_doubt passes through its inside. The depth of a ray that meets it is nowhere
-/// less than d = depth_at + depth_u * u + depth_v * v, nor more than d + thickness, unless that is
-/// `endless`.
+/// every e_i >= edge_doubt passes through its inside. A ray that meets it does so, in units, within
+/// depth_doubt * 2^shift of the depth base + (depth_u * u + depth_v * v) * 2^shift, if the depth is
+/// in [0, deepest]; these bounds fit 32 bits, the products added up 16.
 enum Row : std::size_t {
     edge_u = 0,  ///< and 3, 6
     edge_v = 1,  ///< and 4, 7
     edge_at = 2, ///< and 5, 8
+    edge_rows = 9,
     depth_u = 9,
     depth_v = 10,
-    depth_at = 11,
-    thickness = 12,
-    list_rows = 13
+    depth_base = 11, ///< of 32 bits
+    prim_row = 13,   ///< of 32 bits
+    depth_shift = 15 ///< of 8 bits
 };
 
 inline constexpr int edge_doubt = 8;
-inline constexpr std::int16_t endless = 32767;
+inline constexpr int depth_doubt = 4;
 
 inline constexpr std::size_t chunk_size = 32;
 
@@ -98,7 +95,7 @@ inline constexpr std::size_t chunk_size = 32;
 
 /// Bytes from one chunk of `count` references to the next.
 [[nodiscard]] constexpr std::size_t chunk_bytes(std::size_t count) {
-    return (2 * list_rows + sizeof(PrimId)) * padded(count);
+    return (2 * depth_shift + 1) * padded(count);
 }
 
 /// Bytes before every chunk but the first.
@@ -115,26 +112,30 @@ inline constexpr std::size_t chunk_head_bytes = 4;
 
 /// From the world to units. Parallel: u = x * scale - z * slope - offset for the coordinate x along
 /// the u axis and z along the depth axis; radial: u = x / z * scale - offset for coordinates from
-/// the apex, z > 0. Depth: z * depth_scale + depth_offset.
+/// the apex, z > 0. Depth: key * depth_scale + depth_offset, where the key is z, radial -1 / z: so
+/// depths of a plane are linear in u and v.
 struct FaceMap {
     double scale_u = 0, slope_u = 0, offset_u = 0;
     double scale_v = 0, slope_v = 0, offset_v = 0;
     double depth_scale = 0, depth_offset = 0;
     double size_u = 0, size_v = 0; ///< units; what is outside meets nothing
-    double sign = 1;               ///< depth is the coordinate along the axis times this
-    double reach = 0;              ///< greatest depth that a query may begin or end at
+    double sign = 1;               ///< z is the coordinate along the axis times this
+    double reach = 0;              ///< greatest |z| that a query may begin or end at
+    double front = 0;              ///< no geometry has a smaller z
     int axis = 0, axis_u = 1, axis_v = 2;
     float shear_u = 0, shear_v = 0; ///< parallel: direction u / z and v / z
     float speed = 0;                ///< parallel: |direction z|
     float whole_t = 1;      ///< a ray toward the emitter with such a t_max passes all geometry
     double depth_slack = 1; ///< units that a rounded t may be off, beside a share of it
 
-    // The same map for queries, four numbers at a time: u, v, and units of depth twice, less and
-    // more than what they are off. They are the sum of the columns for x, y, z and 1, each times
-    // its coordinate; radial: where the first three are divided by z for u and v. A length of ray
-    // times `toward`, or `away` from the emitter, is added.
+    // The same map for queries, four numbers at a time: u, v, and units of depth twice, more and
+    // less than what they are off. Parallel: the sum of the columns for x, y, z and 1, each times
+    // its coordinate, to which a length of ray times `toward`, or `away` from the emitter, is added.
+    // Radial: the columns of x, y and z, each times its coordinate, and `dividend` are divided by
+    // z: for depths by that of the ray's end, for which such a length is added to z.
     using Lanes = std::array<double, 4>;
     alignas(32) std::array<Lanes, 4> columns{};
+    Lanes dividend{};
     Lanes toward{}, away{};
     Lanes least{}, limit{}; ///< before a length is added; others are outside or too far away
 };

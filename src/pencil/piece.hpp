@@ -11,6 +11,9 @@
 
 namespace raywise::pencil_detail {
 
+/// Radial keys are right to this share of themselves, as floats; parallel ones exactly.
+inline constexpr double key_rounding = 0x1p-22;
+
 /// A triangle, or a part of one that was cut by the bounds of a cube face. A ray of the pencil that
 /// meets the part passes, in units, within `margin - 1` of the place where a query says it is; each
 /// corner is within 1 of its place along u and v.

@@ -139,9 +139,12 @@ HWY_INLINE void locate_from_apex(const Grid& grid, std::size_t count, Together& 
         );
         const auto is_inside = hn::And(is_within(u, map.size_u), is_within(v, map.size_v));
         const auto length = hn::Mul(load(rays.t.data()), z);
+        const auto inverse_length =
+            hn::Div(hn::Set(d, 1.0), hn::Max(length, hn::Set(d, least_distance[2])));
         const auto depth = [&](std::size_t lane) HWY_ATTR {
+            const double scale = map.dividend[lane] / map.away[lane];
             const auto end =
-                hn::MulAdd(hn::Set(d, map.away[lane]), length, hn::Set(d, map.columns[3][lane]));
+                hn::MulAdd(hn::Set(d, scale), inverse_length, hn::Set(d, map.columns[3][lane]));
             return hn::Max(hn::Min(end, hn::Set(d, depth_limit[lane])), zero);
         };
         const auto put = [&](std::size_t lane, auto value) HWY_ATTR {

@@ -116,7 +116,7 @@ private:
     Hit& best_;
     Count count_;
     PrimId waiting_ = no_prim;
-    std::int16_t waiting_least_ = 0;
+    std::int32_t waiting_least_ = 0;
 };
 
 } // namespace raywise::pencil_detail::HWY_NAMESPACE

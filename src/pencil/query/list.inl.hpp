@@ -31,8 +31,9 @@ namespace hn = hwy::HWY_NAMESPACE;
 /// A query's place in a cell and its depths, as the list has them.
 struct Probe {
     std::int16_t u, v;
-    std::int16_t deepest; ///< what is behind is not met
-    std::int16_t sure;    ///< what is before, and passed through, is met
+    std::int16_t before;     ///< what is met so many steps from `deepest`, below zero, is met
+    std::uint32_t sure_bits; ///< 0 when nothing is sure, else all
+    std::int32_t deepest;    ///< units; what is behind is not met
 };
 
 /// Bit i is for reference i of a chunk. What is sure is possible, too.
@@ -41,12 +42,14 @@ struct Marks {
     std::uint32_t sure;
 };
 
-/// Depths of the references that are marked: they are met between the two, if at all.
+/// Depths of the references that are marked, in units: they are met between the two, if at all.
 struct Depths {
-    alignas(64) std::array<std::int16_t, chunk_size> least;
-    alignas(64) std::array<std::int16_t, chunk_size> greatest;
+    alignas(64) std::array<std::int32_t, chunk_size> least;
+    alignas(64) std::array<std::int32_t, chunk_size> greatest;
 };
 
+/// Of the references from `base` and `shift` on: how many steps of 2^shift a depth is beyond the
+/// base, rounded down and limited to 16 bits; and where the depths base + steps * 2^shift lie.
 #if HWY_TARGET == HWY_SCALAR
 
 using Words = hn::CappedTag<std::int16_t, 1>;
@@ -65,9 +68,32 @@ HWY_INLINE V product(V a, V b) {
     return hn::Set(d, static_cast<std::int16_t>((wide + 0x4000) >> 15));
 }
 
+HWY_INLINE std::int32_t number_at(const std::byte* at) {
+    std::int32_t number; // NOLINT(*-member-init): written next
+    std::memcpy(&number, at, sizeof number);
+    return number;
+}
+
+HWY_INLINE hn::Vec<Words>
+steps_to(std::int32_t depth, const std::byte* base, const std::byte* shift) {
+    const std::int32_t steps = (depth - number_at(base)) >> static_cast<int>(*shift);
+    return hn::Set(Words(), static_cast<std::int16_t>(std::clamp(steps, -32768, 32767)));
+}
+
+HWY_INLINE void store_depths(
+    hn::Vec<Words> steps,
+    const std::byte* base,
+    const std::byte* shift,
+    std::int32_t* depths
+) {
+    *depths = number_at(base) + hn::GetLane(steps) * (1 << static_cast<int>(*shift));
+}
+
 #else
 
 using Words = hn::CappedTag<std::int16_t, chunk_size>;
+using HalfWords = hn::Half<Words>;
+using Integers = hn::Rebind<std::int32_t, HalfWords>;
 
 template <class V>
 HWY_INLINE V saturated_sum(V a, V b) {
@@ -77,6 +103,40 @@ HWY_INLINE V saturated_sum(V a, V b) {
 template <class V>
 HWY_INLINE V product(V a, V b) {
     return hn::MulFixedPoint15(a, b);
+}
+
+HWY_INLINE hn::Vec<Integers> bases_at(const std::byte* at) {
+    return hn::LoadU(Integers(), reinterpret_cast<const std::int32_t*>(at));
+}
+
+HWY_INLINE hn::Vec<Integers> shifts_at(const std::byte* at) {
+    const hn::Rebind<std::uint8_t, Integers> bytes;
+    return hn::PromoteTo(
+        Integers(), hn::LoadU(bytes, reinterpret_cast<const std::uint8_t*>(at))
+    );
+}
+
+HWY_INLINE hn::Vec<Words>
+steps_to(std::int32_t depth, const std::byte* base, const std::byte* shift) {
+    const auto half = [&](std::size_t first) HWY_ATTR {
+        const auto beyond = hn::Sub(hn::Set(Integers(), depth), bases_at(base + 4 * first));
+        return hn::DemoteTo(HalfWords(), hn::Shr(beyond, shifts_at(shift + first)));
+    };
+    return hn::Combine(Words(), half(hn::Lanes(HalfWords())), half(0));
+}
+
+HWY_INLINE void store_depths(
+    hn::Vec<Words> steps,
+    const std::byte* base,
+    const std::byte* shift,
+    std::int32_t* depths
+) {
+    const auto store = [&](hn::Vec<HalfWords> half, std::size_t first) HWY_ATTR {
+        const auto beyond = hn::Shl(hn::PromoteTo(Integers(), half), shifts_at(shift + first));
+        hn::Store(hn::Add(bases_at(base + 4 * first), beyond), Integers(), depths + first);
+    };
+    store(hn::LowerHalf(HalfWords(), steps), 0);
+    store(hn::UpperHalf(HalfWords(), steps), hn::Lanes(HalfWords()));
 }
 
 #endif
@@ -94,15 +154,15 @@ HWY_INLINE std::uint32_t bits_of_words(M mask) {
 HWY_INLINE Marks
 meet(const std::byte* chunk, std::size_t size, const Probe& probe, Depths* depths) {
     const Words d;
-    const std::size_t stride = 2 * padded(size);
+    const std::size_t stride = padded(size);
     const auto u = hn::Set(d, probe.u);
     const auto v = hn::Set(d, probe.v);
     Marks marks{0, 0};
     for (std::size_t i = 0; i < chunk_size; i += hn::Lanes(d)) {
         // Three rows at a time.
         const auto row = [&](std::size_t k) HWY_ATTR {
-            const std::byte* const group = chunk + k / 3 * (3 * stride) + 2 * i;
-            return hn::LoadU(d, reinterpret_cast<const std::int16_t*>(group + k % 3 * stride));
+            const std::byte* const group = chunk + k / 3 * (6 * stride) + 2 * i;
+            return hn::LoadU(d, reinterpret_cast<const std::int16_t*>(group + k % 3 * (2 * stride)));
         };
         const auto edge = [&](std::size_t k) HWY_ATTR {
             const auto change =
@@ -110,35 +170,33 @@ meet(const std::byte* chunk, std::size_t size, const Probe& probe, Depths* depth
             return saturated_sum(row(3 * k + edge_at), change);
         };
         const auto inside = hn::Min(hn::Min(edge(0), edge(1)), edge(2));
-        const auto least =
-            hn::Add(row(depth_at), hn::Add(product(row(depth_u), u), product(row(depth_v), v)));
-        const auto thick = row(thickness);
-        const auto end = hn::Set(d, endless);
-        const auto greatest = hn::IfThenElse(hn::Lt(thick, end), saturated_sum(least, thick), end);
-        const auto is_behind = hn::Gt(least, hn::Set(d, probe.deepest));
+        const std::byte* const base = chunk + 2 * depth_base * stride + 4 * i;
+        const std::byte* const shift = chunk + 2 * depth_shift * stride + i;
+        const auto depth = hn::Add(product(row(depth_u), u), product(row(depth_v), v));
+        const auto deepest = steps_to(probe.deepest, base, shift);
+        const auto doubt = hn::Set(d, std::int16_t{depth_doubt});
+        const auto is_behind = hn::Gt(depth, saturated_sum(deepest, doubt));
+        const auto is_before = hn::Lt(depth, saturated_sum(deepest, hn::Set(d, probe.before)));
         const auto is_possible =
             hn::AndNot(is_behind, hn::Gt(inside, hn::Set(d, std::int16_t{-edge_doubt})));
         const auto is_sure = hn::And(
-            hn::And(is_possible, hn::Gt(inside, hn::Set(d, std::int16_t{edge_doubt - 1}))),
-            hn::Lt(greatest, hn::Set(d, probe.sure))
+            hn::And(is_possible, is_before), hn::Gt(inside, hn::Set(d, std::int16_t{edge_doubt - 1}))
         );
         marks.possible |= bits_of_words(is_possible) << i;
         marks.sure |= bits_of_words(is_sure) << i;
         if (depths != nullptr) {
-            hn::Store(least, d, depths->least.data() + i);
-            hn::Store(greatest, d, depths->greatest.data() + i);
+            store_depths(hn::Sub(depth, doubt), base, shift, depths->least.data() + i);
+            store_depths(hn::Add(depth, doubt), base, shift, depths->greatest.data() + i);
         }
     }
     const std::uint32_t used = 0xFFFFFFFFU >> (chunk_size - size);
-    return {marks.possible & used, marks.sure & used};
+    return {marks.possible & used, marks.sure & used & probe.sure_bits};
 }
 
 /// A query's way through a list.
 struct Walk {
     const std::byte* at; ///< the chunk
     std::size_t left;    ///< references from there on
-    std::int32_t base;
-    int shift;
     Probe probe;
 
     [[nodiscard]] HWY_INLINE std::size_t size() const { return std::min(left, chunk_size); }
@@ -153,18 +211,11 @@ struct Walk {
         PrimId id; // NOLINT(*-member-init): written next
         std::memcpy(
             &id,
-            at + 2 * list_rows * padded(size()) +
+            at + 2 * prim_row * padded(size()) +
                 sizeof id * static_cast<std::size_t>(std::countr_zero(bits)),
             sizeof id
         );
         return id;
-    }
-
-    /// No hit is deeper, in units.
-    [[nodiscard]] HWY_INLINE std::int32_t deepest(const Spot& spot) const {
-        if (probe.deepest == endless) return spot.deepest();
-        const std::int64_t limit = base + ((std::int64_t{probe.deepest} + 1) << shift);
-        return static_cast<std::int32_t>(std::min<std::int64_t>(limit, spot.deepest()));
     }
 
     /// Goes to the next chunk, if one may matter.
@@ -172,7 +223,7 @@ struct Walk {
         if (left <= chunk_size) return false;
         left -= chunk_size;
         at += chunk_bytes(chunk_size);
-        std::int16_t least = 0;
+        std::int32_t least = 0;
         std::memcpy(&least, at, sizeof least);
         at += chunk_head_bytes;
         return least <= probe.deepest;
@@ -183,20 +234,16 @@ HWY_INLINE Walk walk(const Grid& grid, const Leaf& leaf, const Spot& spot) {
     const std::byte* const at = grid.lists + std::size_t{leaf.cell->link} * 16;
     ListHead head;
     std::memcpy(&head, at, sizeof head);
-    const auto depth = [&](std::int32_t units) {
-        return static_cast<std::int16_t>(
-            std::clamp((units - head.base) >> head.shift(), -32768, 32767)
-        );
-    };
+    // A step is a unit at least.
+    const std::int32_t before = spot.deepest() - spot.sure() + depth_doubt;
     return {
         at + sizeof head,
         head.count(),
-        head.base,
-        head.shift(),
         {place_in_cell(spot.u(), leaf.shift),
          place_in_cell(spot.v(), leaf.shift),
-         depth(spot.deepest()),
-         depth(spot.sure())}
+         static_cast<std::int16_t>(-std::min(before, 32767)),
+         before < 32767 ? ~std::uint32_t{0} : 0,
+         spot.deepest()}
     };
 }
 

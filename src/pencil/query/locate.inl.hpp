@@ -51,12 +51,14 @@ constexpr std::int32_t rounding = 4;
 
 constexpr FaceMap::Lanes depth_limit{0x1p30, 0x1p30, deepest, deepest};
 
-/// What is divided by z, and what is not. Depths begin at the origin, which is the apex for rays
-/// that come from there.
-constexpr FaceMap::Lanes divided{1, 1, 0, 0};
+/// Radial: what is divided by the apex's distance along z from the origin, and what by that from
+/// the ray's end. A ray from the apex begins at none.
 template <Heading heading>
-constexpr FaceMap::Lanes undivided =
-    heading == Heading::to_emitter ? FaceMap::Lanes{0, 0, 1, 1} : FaceMap::Lanes{};
+constexpr FaceMap::Lanes begin = heading == Heading::to_emitter ? FaceMap::Lanes{1, 1, 1, 1}
+                                                                : FaceMap::Lanes{1, 1, 0, 0};
+
+/// An end at or behind the apex is as near as can be.
+constexpr FaceMap::Lanes least_distance{0, 0, 0x1p-1000, 0x1p-1000};
 
 enum class Where : std::uint8_t {
     inside,
@@ -108,10 +110,7 @@ HWY_NOINLINE Where where_else(const Grid& grid, const Segment& ray, const FaceMa
         z = static_cast<double>(ray.origin[map.axis]);
     else if (heading == Heading::to_emitter)
         z = static_cast<double>(ray.origin[map.axis]) - grid.apex[map.axis];
-    if (!(std::abs(z) <= map.reach)) return Where::unknown;
-    if (map.size_u == 0) return Where::outside;
-    const double units = z * map.sign * map.depth_scale + map.depth_offset;
-    return units > map.least[2] && units < map.limit[3] ? Where::outside : Where::unknown;
+    return std::abs(z) <= map.reach ? Where::outside : Where::unknown;
 }
 
 template <Heading heading>
@@ -148,38 +147,34 @@ HWY_INLINE Where locate(const Grid& grid, const Segment& ray, Spot& spot) {
     for (std::size_t lane = 0; lane < 4; lane += hn::Lanes(d)) {
         const auto load = [&](const FaceMap::Lanes& lanes)
                               HWY_ATTR { return hn::LoadU(d, lanes.data() + lane); };
-        auto sum = load(map.columns[3]);
-        if (is_parallel) {
-            sum = hn::MulAdd(load(map.columns[2]), z, sum);
-            sum = hn::MulAdd(load(map.columns[1]), y, sum);
-            sum = hn::MulAdd(load(map.columns[0]), x, sum);
-        } else {
-            const auto product = hn::MulAdd(
-                load(map.columns[0]),
-                x,
-                hn::MulAdd(load(map.columns[1]), y, hn::Mul(load(map.columns[2]), z))
-            );
-            const auto inverse = hn::Div(hn::Set(d, 1.0), hn::Set(d, longest));
-            sum = hn::MulAdd(
-                product, hn::MulAdd(load(divided), inverse, load(undivided<heading>)), sum
-            );
+        const auto along = load(heading == Heading::to_emitter ? map.toward : map.away);
+        auto sum = load(is_parallel ? map.columns[3] : map.dividend);
+        sum = hn::MulAdd(load(map.columns[2]), z, sum);
+        sum = hn::MulAdd(load(map.columns[1]), y, sum);
+        sum = hn::MulAdd(load(map.columns[0]), x, sum);
+        if (!is_parallel) {
+            const auto end =
+                hn::MulAdd(along, length, hn::Mul(load(begin<heading>), hn::Set(d, longest)));
+            const auto distance = hn::Max(end, load(least_distance));
+            const auto inverse = hn::Div(hn::Set(d, 1.0), distance);
+            sum = hn::MulAdd(sum, inverse, load(map.columns[3]));
         }
         is_inside &=
             hn::AllTrue(d, hn::And(hn::Ge(sum, load(map.least)), hn::Lt(sum, load(map.limit))));
-        sum = hn::MulAdd(load(heading == Heading::to_emitter ? map.toward : map.away), length, sum);
+        if (is_parallel) sum = hn::MulAdd(along, length, sum);
         // Places are within these limits, too, but for depths.
         sum = hn::Max(hn::Min(sum, load(depth_limit)), hn::Zero(d));
         hn::StoreU(hn::DemoteTo(integers, sum), integers, spot.units.data() + lane);
     }
+    if (!is_parallel && heading == Heading::to_emitter) is_inside &= longest <= map.reach;
     if (!is_inside) [[unlikely]]
         return where_else<heading>(grid, ray, map);
 
     bool is_whole = ray.t_max >= map.whole_t;
     if constexpr (heading == Heading::from_emitter) {
         const double start = is_parallel ? static_cast<double>(ray.origin[map.axis]) * map.sign : 0;
-        is_whole = depth_units_of(map, start) +
-                       static_cast<double>(ray.t_min) * longest * map.away[2] + map.depth_slack <
-                   shallowest - rounding;
+        const double speed = is_parallel ? static_cast<double>(map.speed) : longest;
+        is_whole = start + static_cast<double>(ray.t_min) * speed * (1 + 0x1p-20) < map.front;
     }
     spot.units[3] = is_whole ? spot.units[3] - rounding : nothing_sure;
     return Where::inside;
@@ -222,7 +217,7 @@ HWY_INLINE Leaf look_at(const Cell& cell, int shift, const Spot& spot) {
     };
     const std::int32_t plane = cell.slope_u * along(spot.u()) + cell.slope_v * along(spot.v());
     const bool is_miss = spot.deepest() - cell.base < (plane >> 15) * (1 << cell.shift);
-    const bool is_hit = decides_hits && (spot.sure() >> 8) > cell.cover;
+    const bool is_hit = decides_hits && (spot.sure() >> cover_shift) > static_cast<std::int32_t>(cell.cover);
     constexpr auto miss = static_cast<std::int32_t>(Verdict::miss);
     constexpr auto hit = static_cast<std::int32_t>(Verdict::hit);
     return {&cell, shift, is_miss ? miss : is_hit ? hit : Leaf::open};
@@ -246,7 +241,7 @@ HWY_INLINE Leaf find_leaf(const Grid& grid, const Spot& spot, Count count) {
 
 /// Whether the leaf's list has all triangles that the ray may meet at most so deep.
 HWY_INLINE bool is_complete(std::int32_t deepest_hit, const Leaf& leaf) {
-    return (deepest_hit >> 8) <= leaf.cell->cover;
+    return (deepest_hit >> cover_shift) <= static_cast<std::int32_t>(leaf.cell->cover);
 }
 
 } // namespace raywise::pencil_detail::HWY_NAMESPACE

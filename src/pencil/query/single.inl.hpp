@@ -112,7 +112,7 @@ HWY_INLINE Verdict closest_hit_along(const Grid& grid, const Ray& ray, Hit& hit,
             do
                 closest.look(way);
             while (way.advance());
-            if (!is_complete(way.deepest(spot), leaf)) {
+            if (!is_complete(way.probe.deepest, leaf)) {
                 const bool is_first = closest.finish() && is_listed<heading>(grid, ray, hit, leaf);
                 return is_first ? Verdict::hit : Verdict::unknown;
             }

@@ -175,7 +175,7 @@ HWY_INLINE void closest_hit_together(
         while (way.advance());
         prims[i] = closest.only_one();
         sure[surely] = static_cast<std::uint8_t>(i);
-        if (!is_complete(way.deepest(spot), leaves[i])) {
+        if (!is_complete(way.probe.deepest, leaves[i])) {
             const bool is_first =
                 closest.finish() && is_listed<heading>(grid, batch[i], hits[i], leaves[i]);
             verdicts[i] = is_first ? Verdict::hit : Verdict::unknown;
