@@ -102,6 +102,10 @@ double scale(
     map.depth_offset = shallowest - least_key * map.depth_scale;
     map.depth_slack = 1 + 0x1p-148 * static_cast<double>(map.speed) * map.depth_scale;
     map.front = is_radial ? -1 / least_key : least_key;
+    // t / (1 - t) for the share t of a ray.
+    const double strays = stray_share * std::max(map.scale_u, map.scale_v);
+    map.most_t =
+        is_radial ? static_cast<float>(0.25 / (strays + 0.25)) : std::numeric_limits<float>::max();
     set_lanes(map, is_radial);
     const double greatest = is_radial ? 2 : 4 * map.reach;
     return 0x1p-49 * greatest * std::max(map.scale_u, map.scale_v);
@@ -134,7 +138,7 @@ std::vector<Piece> snap(
                 4 + static_cast<std::int32_t>(std::min(std::ceil(rounding + strays), 0x1p27));
             piece.prim = from.prim;
             piece.is_part = from.is_part;
-            piece.reaches_apex = from.reaches_apex;
+            piece.is_near = from.is_near;
         }
     });
     return pieces;
@@ -258,7 +262,7 @@ std::unique_ptr<BuiltFace> build_face(
     built->pieces = snap(pieces, built->face, rounding, executor);
     Contents contents;
     if (!fill(contents, *built, most_references, executor)) return nullptr;
-    const EdgeLines edges(built->face.map, is_radial, records, apex);
+    const EdgeLines edges(built->face.map, is_radial, records, apex, rounding);
     build_cells(*built, contents, edges, is_radial, params, executor);
     return built;
 }

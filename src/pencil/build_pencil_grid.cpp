@@ -155,7 +155,14 @@ RawFaces raw_faces(PencilGrid::Data& data, const Records& records, const Executo
             map.reach = reach;
             set_lanes(map, true);
             faces.pieces[face] = radial_pieces(
-                records, data.pencil.apex(), axis, side == 0 ? 1 : -1, nearest, reach, executor
+                records,
+                data.pencil.apex(),
+                axis,
+                side == 0 ? 1 : -1,
+                nearest,
+                reach,
+                data.near,
+                executor
             );
         }
     return faces;

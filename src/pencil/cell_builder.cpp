@@ -67,7 +67,7 @@ Cell CellBuilder::build(std::span<const std::uint32_t> pieces, const Window& win
     if (references.size() > params_.leaf_size && shift > place_bits &&
         split(references, window, shift, cell))
         return cell;
-    add_list(references, window, cell);
+    add_list(references, cell);
     return cell;
 }
 
@@ -177,7 +177,7 @@ void CellBuilder::merge_parts(std::vector<Reference>& references) const {
     references.resize(kept);
 }
 
-void CellBuilder::add_list(std::vector<Reference>& references, const Window& window, Cell& cell) {
+void CellBuilder::add_list(std::vector<Reference>& references, Cell& cell) {
     if (is_radial_) merge_parts(references);
     const std::size_t count = references.size();
     if (count > ListHead::most_references) throw Error("pencil grid: too many triangles in a cell");
@@ -208,7 +208,7 @@ void CellBuilder::add_list(std::vector<Reference>& references, const Window& win
             };
             for (std::size_t row = 0; row < edge_rows; ++row)
                 put(row, reference.edges.values[row]);
-            const DepthRows depths = depth_rows(reference, window);
+            const DepthRows depths = depth_rows(reference);
             put(depth_u, depths.u);
             put(depth_v, depths.v);
             put(depth_base, depths.base);
@@ -299,30 +299,26 @@ void CellBuilder::set_near(
 }
 
 /// The plane of the triangle, or its least and greatest depth in the cell, whichever is closer.
-CellBuilder::DepthRows
-CellBuilder::depth_rows(const Reference& reference, const Window& window) const {
+CellBuilder::DepthRows CellBuilder::depth_rows(const Reference& reference) const {
     const Piece& piece = pieces_[reference.piece];
-    const double least = piece.reaches_apex ? 0 : reference.least;
-    const double greatest = piece.reaches_apex ? deepest : reference.greatest;
+    const double least = piece.is_near ? 0 : reference.least;
+    const double greatest = piece.is_near ? deepest : reference.greatest;
     const double middle = std::floor(0.5 * (least + greatest));
     std::uint8_t shift = 0;
-    while (scaled(depth_doubt - 0.5, shift) < greatest - middle)
+    while (scaled(depth_doubt, shift) < greatest - middle)
         ++shift;
     const DepthRows level{0, 0, static_cast<std::int32_t>(middle), shift};
 
     const DepthPlane& plane = reference.plane;
+    if (!plane.is_known || piece.is_near) return level;
     const double steep = std::abs(plane.u) + std::abs(plane.v);
-    if (!plane.is_known) return level;
-    // Between the apex and the nearest pieces, where rays may begin.
-    if (piece.reaches_apex && plane.at - steep - plane.error < shallowest) return level;
-    const double place_error = 0x1p-14 + (piece.margin + 3) / (0.5 * window.side);
-    const double error = plane.error + steep * place_error + 1;
     // Rounding a slope takes off at most 1/2, rounding its product with a place as much: 2 in all.
     std::uint8_t plane_shift = 0;
-    while (scaled(16000, plane_shift) < steep || scaled(depth_doubt - 2.5, plane_shift) < error)
+    while (scaled(32000, plane_shift) < steep ||
+           scaled(depth_doubt - 2, plane_shift) < plane.error + 1)
         if (++plane_shift >= shift) return level;
     // Far from the triangle, its plane may be anywhere.
-    if (!(steep < 0x1p29 && std::abs(plane.at) < 0x1p30)) return level;
+    if (!(steep < 0x1p30 && plane.at > -0x1p30 && plane.at < 0x1.fp30)) return level;
     return {
         static_cast<std::int16_t>(nearest(plane.u / scaled(1, plane_shift))),
         static_cast<std::int16_t>(nearest(plane.v / scaled(1, plane_shift))),

@@ -61,11 +61,11 @@ private:
 
     Cell build(std::span<const std::uint32_t> pieces, const Window& window, int shift);
     void set_near(Cell& cell, const std::vector<Reference>& references, const Window& window) const;
-    [[nodiscard]] DepthRows depth_rows(const Reference& reference, const Window& window) const;
+    [[nodiscard]] DepthRows depth_rows(const Reference& reference) const;
     [[nodiscard]] std::int32_t cull(std::vector<Reference>& references);
     [[nodiscard]] bool
     split(const std::vector<Reference>& references, const Window& window, int shift, Cell& cell);
-    void add_list(std::vector<Reference>& references, const Window& window, Cell& cell);
+    void add_list(std::vector<Reference>& references, Cell& cell);
     void merge_parts(std::vector<Reference>& references) const;
     [[nodiscard]] std::size_t grow(std::size_t bytes);
 

@@ -44,7 +44,9 @@ DepthPlane parallel_plane(
     const std::array<Line, 3>& edges,
     double area
 ) {
-    const auto depth = [&](std::size_t i) { return depth_units_of(map, p[i][map.axis] * map.sign); };
+    const auto depth = [&](std::size_t i) {
+        return depth_units_of(map, p[i][map.axis] * map.sign);
+    };
     const double first = depth(0);
     const double rise_1 = (depth(1) - first) / area;
     const double rise_2 = (depth(2) - first) / area;
@@ -98,13 +100,10 @@ Lines parallel_lines(
     return lines;
 }
 
-/// The normals of the edges' planes add up to that of the triangle's: 1 / z = (e0 + e1 + e2) / turn.
-DepthPlane radial_plane(
-    const FaceMap& map,
-    const std::array<Line, 3>& edges,
-    double turn,
-    double turn_error
-) {
+/// The normals of the edges' planes add up to that of the triangle's: 1 / z = (e0 + e1 + e2) /
+/// turn.
+DepthPlane
+radial_plane(const FaceMap& map, const std::array<Line, 3>& edges, double turn, double turn_error) {
     const auto [a, b, c] = edges;
     const double factor = -map.depth_scale / turn;
     const double at = factor * (a.at + b.at + c.at);
@@ -119,9 +118,9 @@ DepthPlane radial_plane(
         v,
         error,
         std::abs(map.depth_offset) +
-            std::abs(factor) * (std::abs(a.at) + std::abs(b.at) + std::abs(c.at) + std::abs(a.u) +
-                                std::abs(b.u) + std::abs(c.u) + std::abs(a.v) + std::abs(b.v) +
-                                std::abs(c.v))
+            std::abs(factor) *
+                (std::abs(a.at) + std::abs(b.at) + std::abs(c.at) + std::abs(a.u) + std::abs(b.u) +
+                 std::abs(c.u) + std::abs(a.v) + std::abs(b.v) + std::abs(c.v))
     );
 }
 
@@ -248,8 +247,18 @@ bool is_small(const Footprint& bounds, const Window& window) {
 
 } // namespace
 
-EdgeLines::EdgeLines(const FaceMap& map, bool is_radial, const Records& records, Vec3d apex)
-    : map_(map), is_radial_(is_radial), records_(records.values), apex_(apex) {
+EdgeLines::EdgeLines(
+    const FaceMap& map,
+    bool is_radial,
+    const Records& records,
+    Vec3d apex,
+    double rounding
+)
+    : map_(map)
+    , is_radial_(is_radial)
+    , records_(records.values)
+    , apex_(apex)
+    , place_error_(rounding + 0.5) {
     // A place is a sum of four products, off by the roundings of the largest.
     for (std::size_t lane = 0; lane < 2; ++lane) {
         double largest = std::abs(map.columns[3][lane]);
@@ -257,6 +266,28 @@ EdgeLines::EdgeLines(const FaceMap& map, bool is_radial, const Records& records,
             largest = std::max(largest, std::abs(map.columns[axis][lane]) * records.greatest);
         off_ = std::max(off_, 0x1p-49 * largest);
     }
+}
+
+/// With what places are off added to the error.
+///
+/// A ray toward an apex may stray, as its direction is rounded: by stray_share * reach * t / z, as
+/// a slope, where it has gone the share t of its way and z is left of it. With s = (|slope_u| +
+/// |slope_v|) * stray_share * reach in depths per slope, it meets the triangle within s t / z of
+/// the plane's depth at its place. That is less than what lies between there and its end at t_min,
+/// depth_scale / z0 * (t - t_min) / ((1 - t) (1 - t_min)), but near t_min: so, if s is at most a
+/// quarter of depth_scale, twice what it strays at t_min is enough, and that is half a unit at
+/// most, see FaceMap::most_t.
+DepthPlane EdgeLines::found_by_place(const DepthPlane& plane, const Window& window) const {
+    const double half = window.side * 0.5;
+    const double strays = (std::abs(plane.u) * map_.scale_u + std::abs(plane.v) * map_.scale_v) /
+                          half * (stray_share * map_.reach);
+    DepthPlane found = plane;
+    // Places are rounded down to units.
+    const double steps = (plane.u + plane.v) / half;
+    found.at += 0.5 * steps;
+    found.error += (std::abs(plane.u) + std::abs(plane.v)) / half * (0.5 + place_error_);
+    found.is_known = plane.is_known && (!is_radial_ || strays <= map_.depth_scale / 4);
+    return found;
 }
 
 SeenTriangle
@@ -280,7 +311,7 @@ EdgeLines::see(const Piece& piece, const Footprint& bounds, const Window& window
         const int most = put(lines.edges[i], place_error, rows.values.data() + 3 * i);
         rows.is_missed = rows.is_missed || most <= -edge_doubt;
     }
-    return {rows, lines.depth};
+    return {rows, found_by_place(lines.depth, window)};
 }
 
 } // namespace raywise::pencil_detail

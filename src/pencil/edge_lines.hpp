@@ -19,8 +19,9 @@ struct EdgeRows {
     bool is_missed; ///< whether no ray of the cell meets the triangle: nothing to list
 };
 
-/// A ray that meets the triangle at the place (X, Y), in half cells from the middle, does so within
-/// `error` of the depth at + u X + v Y, in units, when that is known.
+/// Where that is known: at + u X + v Y, in units, for the place (X, Y) of a query in half cells
+/// from the middle. The query ends before the triangle if it ends more than `error` before this
+/// depth; if it ends more than `error` behind, and passes through, it meets the triangle.
 struct DepthPlane {
     double at = 0, u = 0, v = 0;
     double error = 0;
@@ -36,18 +37,28 @@ struct SeenTriangle {
 /// Edges of the triangles of a face, whole triangles also where the face's bounds cut them.
 class EdgeLines {
 public:
-    EdgeLines(const FaceMap& map, bool is_radial, const Records& records, Vec3d apex);
+    /// `rounding`: how far a place may be off by the roundings of the map, in units.
+    EdgeLines(
+        const FaceMap& map,
+        bool is_radial,
+        const Records& records,
+        Vec3d apex,
+        double rounding
+    );
 
     /// Of the triangle whose piece has these bounds in the cell `window`.
     [[nodiscard]] SeenTriangle
     see(const Piece& piece, const Footprint& bounds, const Window& window) const;
 
 private:
+    [[nodiscard]] DepthPlane found_by_place(const DepthPlane& plane, const Window& window) const;
+
     const FaceMap& map_;
     bool is_radial_;
     const float* records_;
     Vec3d apex_;
-    double off_ = 0; ///< parallel: how far computed places of vertices may be off, in units
+    double place_error_; ///< how far, in units, a query is from its place where it begins, at most
+    double off_ = 0;     ///< parallel: how far computed places of vertices may be off, in units
 };
 
 } // namespace raywise::pencil_detail

@@ -95,6 +95,7 @@ std::vector<RawPiece> radial_pieces(
     int sign,
     double nearest,
     double reach,
+    std::span<const PrimId> near,
     const Executor& executor
 ) {
     const int axis_u = (axis + 1) % 3;
@@ -106,7 +107,7 @@ std::vector<RawPiece> radial_pieces(
         Polygon polygon;
         bool is_outside = true;
         bool is_inside = true;
-        bool reaches_apex = false;
+        bool goes_on = false;
         std::array<bool, 4> beyond{true, true, true, true};
         for (std::size_t i = 0; i < 3; ++i) {
             const Vec3d p = vertex(records, id, i) - eye;
@@ -114,7 +115,7 @@ std::vector<RawPiece> radial_pieces(
             const double limit = q.z * edge;
             polygon.add(q);
             is_outside = is_outside && q.z < nearest;
-            reaches_apex = reaches_apex || q.z < nearest;
+            goes_on = goes_on || q.z < nearest;
             is_inside =
                 is_inside && q.z >= nearest && std::abs(q.x) <= limit && std::abs(q.y) <= limit;
             beyond[0] = beyond[0] && q.x > limit;
@@ -131,6 +132,7 @@ std::vector<RawPiece> radial_pieces(
             cut(polygon, {0, 1, edge}, 0);
         }
         if (polygon.count < 3) return;
+        const bool is_near = goes_on && std::binary_search(near.begin(), near.end(), id);
         double least = polygon.corners[0].z;
         for (std::size_t i = 1; i < polygon.count; ++i)
             least = std::min(least, polygon.corners[i].z);
@@ -145,10 +147,10 @@ std::vector<RawPiece> radial_pieces(
                 piece.v[k] = q.y * inverse;
                 piece.key[k] = static_cast<float>(-inverse);
             }
-            piece.margin = static_cast<float>(0x1p-22 * reach / least);
+            piece.margin = static_cast<float>(stray_share * reach / least);
             piece.prim = id;
             piece.is_part = polygon.count > 3;
-            piece.reaches_apex = reaches_apex;
+            piece.is_near = is_near;
             pieces.push_back(piece);
         }
     });

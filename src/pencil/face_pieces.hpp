@@ -32,11 +32,12 @@ struct RawPiece {
     float margin; ///< radial: how far, as a slope, a shadow ray may stray at the least depth
     PrimId prim;
     bool is_part;
-    bool reaches_apex; ///< whether the triangle goes on nearer to the apex than any piece
+    bool is_near; ///< whether the triangle goes on near the apex, where no piece is
 };
 
 /// The pieces of the cube face on the side `sign` of `axis`, beyond `nearest` from the apex; rays
-/// come from at most `reach` away. In order of ids.
+/// come from at most `reach` away; `near` are the triangles that may be met before. In order of
+/// ids, as `near` is.
 [[nodiscard]] std::vector<RawPiece> radial_pieces(
     const Records& records,
     Vec3 apex,
@@ -44,6 +45,7 @@ struct RawPiece {
     int sign,
     double nearest,
     double reach,
+    std::span<const PrimId> near,
     const Executor& executor
 );
 

@@ -70,8 +70,9 @@ static_assert(sizeof(ListHead) == 4);
 /// Edge i of a reference's triangle has at the place the value e_i = edge_at[i] + edge_u[i] * u +
 /// edge_v[i] * v. A ray of the cell that meets the triangle has every e_i > -edge_doubt; one with
 /// every e_i >= edge_doubt passes through its inside. A ray that meets it does so, in units, within
-/// depth_doubt * 2^shift of the depth base + (depth_u * u + depth_v * v) * 2^shift, if the depth is
-/// in [0, deepest]; these bounds fit 32 bits, the products added up 16.
+/// depth_doubt * 2^shift of the depth base + (depth_u * u + depth_v * v) * 2^shift; where no ray
+/// meets it, this may be too large for 32 bits. The products added up fit 16 bits, and so does the
+/// difference of a depth and the base 32.
 enum Row : std::size_t {
     edge_u = 0,  ///< and 3, 6
     edge_v = 1,  ///< and 4, 7
@@ -85,7 +86,7 @@ enum Row : std::size_t {
 };
 
 inline constexpr int edge_doubt = 8;
-inline constexpr int depth_doubt = 4;
+inline constexpr int depth_doubt = 3;
 
 inline constexpr std::size_t chunk_size = 32;
 
@@ -125,14 +126,16 @@ struct FaceMap {
     int axis = 0, axis_u = 1, axis_v = 2;
     float shear_u = 0, shear_v = 0; ///< parallel: direction u / z and v / z
     float speed = 0;                ///< parallel: |direction z|
-    float whole_t = 1;      ///< a ray toward the emitter with such a t_max passes all geometry
+    float most_t = 0;  ///< rays toward an apex that begin later may stray from their place by more
+                       ///< than a quarter unit before they begin
+    float whole_t = 1; ///< a ray toward the emitter with such a t_max passes all geometry
     double depth_slack = 1; ///< units that a rounded t may be off, beside a share of it
 
     // The same map for queries, four numbers at a time: u, v, and units of depth twice, more and
     // less than what they are off. Parallel: the sum of the columns for x, y, z and 1, each times
-    // its coordinate, to which a length of ray times `toward`, or `away` from the emitter, is added.
-    // Radial: the columns of x, y and z, each times its coordinate, and `dividend` are divided by
-    // z: for depths by that of the ray's end, for which such a length is added to z.
+    // its coordinate, to which a length of ray times `toward`, or `away` from the emitter, is
+    // added. Radial: the columns of x, y and z, each times its coordinate, and `dividend` are
+    // divided by z: for depths by that of the ray's end, for which such a length is added to z.
     using Lanes = std::array<double, 4>;
     alignas(32) std::array<Lanes, 4> columns{};
     Lanes dividend{};

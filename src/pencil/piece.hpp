@@ -14,6 +14,10 @@ namespace raywise::pencil_detail {
 /// Radial keys are right to this share of themselves, as floats; parallel ones exactly.
 inline constexpr double key_rounding = 0x1p-22;
 
+/// How far a shadow ray toward an apex strays at most, as a slope, where the apex is nearer than
+/// the ray's origin by a factor of (1 - t) after the share t of its way: times t / (1 - t).
+inline constexpr double stray_share = 0x1p-22;
+
 /// A triangle, or a part of one that was cut by the bounds of a cube face. A ray of the pencil that
 /// meets the part passes, in units, within `margin - 1` of the place where a query says it is; each
 /// corner is within 1 of its place along u and v.
@@ -23,8 +27,8 @@ struct Piece {
     std::array<float, 3> key; ///< linear across the face, ascending with depth: z, or -1 / z
     std::int32_t margin;
     PrimId prim;
-    bool is_part;      ///< whether other pieces have the same triangle
-    bool reaches_apex; ///< whether a ray that passes through the triangle may miss all its pieces
+    bool is_part; ///< whether other pieces have the same triangle
+    bool is_near; ///< whether a ray that meets the triangle near the apex may miss all its pieces
 
     [[nodiscard]] std::int32_t least_u() const { return std::min({u[0], u[1], u[2]}) - margin; }
 

@@ -86,7 +86,8 @@ HWY_INLINE void store_depths(
     const std::byte* shift,
     std::int32_t* depths
 ) {
-    *depths = number_at(base) + hn::GetLane(steps) * (1 << static_cast<int>(*shift));
+    const std::int64_t beyond = std::int64_t{hn::GetLane(steps)} * (1 << static_cast<int>(*shift));
+    *depths = static_cast<std::int32_t>(number_at(base) + beyond);
 }
 
 #else
@@ -111,9 +112,7 @@ HWY_INLINE hn::Vec<Integers> bases_at(const std::byte* at) {
 
 HWY_INLINE hn::Vec<Integers> shifts_at(const std::byte* at) {
     const hn::Rebind<std::uint8_t, Integers> bytes;
-    return hn::PromoteTo(
-        Integers(), hn::LoadU(bytes, reinterpret_cast<const std::uint8_t*>(at))
-    );
+    return hn::PromoteTo(Integers(), hn::LoadU(bytes, reinterpret_cast<const std::uint8_t*>(at)));
 }
 
 HWY_INLINE hn::Vec<Words>
@@ -162,7 +161,9 @@ meet(const std::byte* chunk, std::size_t size, const Probe& probe, Depths* depth
         // Three rows at a time.
         const auto row = [&](std::size_t k) HWY_ATTR {
             const std::byte* const group = chunk + k / 3 * (6 * stride) + 2 * i;
-            return hn::LoadU(d, reinterpret_cast<const std::int16_t*>(group + k % 3 * (2 * stride)));
+            return hn::LoadU(
+                d, reinterpret_cast<const std::int16_t*>(group + k % 3 * (2 * stride))
+            );
         };
         const auto edge = [&](std::size_t k) HWY_ATTR {
             const auto change =
@@ -180,7 +181,8 @@ meet(const std::byte* chunk, std::size_t size, const Probe& probe, Depths* depth
         const auto is_possible =
             hn::AndNot(is_behind, hn::Gt(inside, hn::Set(d, std::int16_t{-edge_doubt})));
         const auto is_sure = hn::And(
-            hn::And(is_possible, is_before), hn::Gt(inside, hn::Set(d, std::int16_t{edge_doubt - 1}))
+            hn::And(is_possible, is_before),
+            hn::Gt(inside, hn::Set(d, std::int16_t{edge_doubt - 1}))
         );
         marks.possible |= bits_of_words(is_possible) << i;
         marks.sure |= bits_of_words(is_sure) << i;

@@ -54,8 +54,8 @@ constexpr FaceMap::Lanes depth_limit{0x1p30, 0x1p30, deepest, deepest};
 /// Radial: what is divided by the apex's distance along z from the origin, and what by that from
 /// the ray's end. A ray from the apex begins at none.
 template <Heading heading>
-constexpr FaceMap::Lanes begin = heading == Heading::to_emitter ? FaceMap::Lanes{1, 1, 1, 1}
-                                                                : FaceMap::Lanes{1, 1, 0, 0};
+constexpr FaceMap::Lanes begin =
+    heading == Heading::to_emitter ? FaceMap::Lanes{1, 1, 1, 1} : FaceMap::Lanes{1, 1, 0, 0};
 
 /// An end at or behind the apex is as near as can be.
 constexpr FaceMap::Lanes least_distance{0, 0, 0x1p-1000, 0x1p-1000};
@@ -177,6 +177,10 @@ HWY_INLINE Where locate(const Grid& grid, const Segment& ray, Spot& spot) {
         is_whole = start + static_cast<double>(ray.t_min) * speed * (1 + 0x1p-20) < map.front;
     }
     spot.units[3] = is_whole ? spot.units[3] - rounding : nothing_sure;
+    if (heading == Heading::to_emitter && !is_parallel && ray.t_min > map.most_t) [[unlikely]] {
+        spot.units[2] = deepest;
+        spot.units[3] = nothing_sure;
+    }
     return Where::inside;
 }
 
@@ -217,7 +221,8 @@ HWY_INLINE Leaf look_at(const Cell& cell, int shift, const Spot& spot) {
     };
     const std::int32_t plane = cell.slope_u * along(spot.u()) + cell.slope_v * along(spot.v());
     const bool is_miss = spot.deepest() - cell.base < (plane >> 15) * (1 << cell.shift);
-    const bool is_hit = decides_hits && (spot.sure() >> cover_shift) > static_cast<std::int32_t>(cell.cover);
+    const bool is_hit =
+        decides_hits && (spot.sure() >> cover_shift) > static_cast<std::int32_t>(cell.cover);
     constexpr auto miss = static_cast<std::int32_t>(Verdict::miss);
     constexpr auto hit = static_cast<std::int32_t>(Verdict::hit);
     return {&cell, shift, is_miss ? miss : is_hit ? hit : Leaf::open};
