@@ -27,6 +27,10 @@ namespace raywise::pencil_detail::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
+/// So many lists are asked for before they are read: more would not fit what the processor keeps in
+/// flight.
+constexpr std::size_t ahead = 4;
+
 /// Of the pencil's shadow rays.
 HWY_INLINE float shadow_t_max(const Grid& grid) {
     return grid.pencil.kind() == Pencil::Kind::parallel ? std::numeric_limits<float>::infinity()
@@ -63,11 +67,13 @@ HWY_INLINE void any_hit_together(
         const std::size_t i = open[k];
         leaves[i] = find_leaf<true>(grid, rays.spot(i), NoCounts{});
         verdicts[i] = static_cast<Verdict>(leaves[i].verdict);
-        prefetch_list(grid, leaves[i]);
         open[kept] = static_cast<std::uint8_t>(i);
         kept += static_cast<std::size_t>(!leaves[i].has_verdict());
     }
+    for (std::size_t k = 0; k < std::min(kept, ahead); ++k)
+        prefetch_list(grid, leaves[open[k]]);
     for (std::size_t k = 0; k < kept; ++k) {
+        if (k + ahead < kept) prefetch_list(grid, leaves[open[k + ahead]]);
         const std::size_t i = open[k];
         const auto ray = [&ray_of, i] { return ray_of(i); };
         verdicts[i] =
@@ -160,12 +166,14 @@ HWY_INLINE void closest_hit_together(
     for (std::size_t k = 0; k < left; ++k) {
         const std::size_t i = open[k];
         leaves[i] = find_leaf<false>(grid, rays.spot(i), NoCounts{});
-        prefetch_list(grid, leaves[i]);
         open[kept] = static_cast<std::uint8_t>(i);
         kept += static_cast<std::size_t>(!leaves[i].has_verdict());
     }
+    for (std::size_t k = 0; k < std::min(kept, ahead); ++k)
+        prefetch_list(grid, leaves[open[k]]);
     std::size_t surely = 0;
     for (std::size_t k = 0; k < kept; ++k) {
+        if (k + ahead < kept) prefetch_list(grid, leaves[open[k + ahead]]);
         const std::size_t i = open[k];
         const Spot spot = rays.spot(i);
         Closest<heading, NoCounts> closest(grid, batch[i], hits[i], NoCounts{});
