@@ -99,7 +99,7 @@ std::string AreaHandle::explain() const {
 }
 
 std::optional<Hit> AreaHandle::closest_hit(const Ray& ray) const {
-    if (!is_gridded(ray)) return closest_hit_by_trees(ray);
+    if (grid_ == nullptr) return closest_hit_by_trees(ray);
     // One result from the first write to the last reader: copies of what was just written stall.
     std::optional<Hit> hit;
     const Verdict verdict = grid_->closest_hit(ray, hit.emplace());
@@ -110,23 +110,22 @@ std::optional<Hit> AreaHandle::closest_hit(const Ray& ray) const {
 
 std::optional<Hit> AreaHandle::closest_hit_by_trees(const Ray& ray) const {
     if (const WideBvh* whole = whole_tree()) return raywise::closest_hit(*whole, ray);
+    if (!is_valid(ray)) return std::nullopt;
     SilentQuery nobody;
-    return closest_hit(ray, nobody);
+    return owner_->closest_by_mode(ray, owner_->candidates_in(id_, ray), nobody);
 }
 
 bool AreaHandle::any_hit(const Ray& ray) const {
-    if (is_gridded(ray)) {
-        const Verdict verdict = grid_->any_hit(ray);
-        if (verdict != Verdict::unknown) return verdict == Verdict::hit;
-    }
-    if (const WideBvh* whole = whole_tree()) return raywise::any_hit(*whole, ray);
-    SilentQuery nobody;
-    return any_hit(ray, nobody);
+    if (grid_ == nullptr) return any_hit_by_trees(ray);
+    const Verdict verdict = grid_->any_hit(ray);
+    return verdict == Verdict::unknown ? any_hit_by_trees(ray) : verdict == Verdict::hit;
 }
 
-bool AreaHandle::is_gridded(std::span<const Ray> rays) const {
-    return grid_ != nullptr &&
-           std::all_of(rays.begin(), rays.end(), [&](const Ray& ray) { return is_gridded(ray); });
+bool AreaHandle::any_hit_by_trees(const Ray& ray) const {
+    if (const WideBvh* whole = whole_tree()) return raywise::any_hit(*whole, ray);
+    if (!is_valid(ray)) return false;
+    SilentQuery nobody;
+    return owner_->any_by_mode(ray, owner_->candidates_in(id_, ray), nobody);
 }
 
 bool AreaHandle::are_exact(std::span<const Ray> rays, const Executor& executor) const {
@@ -159,12 +158,10 @@ void AreaHandle::closest_hits(
     const LocalStructure& own = structure();
     if (is_worth_drawing(rays.size()) && are_exact(rays, executor))
         return closest_hits_once(own.triangles->view(), *own.pencil, rays, hits, executor);
-    const auto answer = [&](const Ray& ray) { return closest_hit(ray).value_or(Hit{}); };
+    const auto by_trees = [&](const Ray& ray) { return closest_hit_by_trees(ray).value_or(Hit{}); };
+    if (grid_ != nullptr) return grid_->closest_hits(rays, hits, by_trees, executor);
     for_each_part(rays, hits, executor, [&](std::span<const Ray> part, std::span<Hit> answers) {
-        if (is_gridded(part))
-            grid_->closest_hits(part, answers, answer);
-        else
-            std::transform(part.begin(), part.end(), answers.begin(), answer);
+        std::transform(part.begin(), part.end(), answers.begin(), by_trees);
     });
 }
 
@@ -177,16 +174,14 @@ void AreaHandle::any_hits(
     const LocalStructure& own = structure();
     if (is_worth_drawing(rays.size()) && are_exact(rays, executor))
         return any_hits_once(own.triangles->view(), *own.pencil, rays, occluded, executor);
-    const auto answer = [&](const Ray& ray) { return any_hit(ray); };
+    const auto by_trees = [&](const Ray& ray) { return any_hit_by_trees(ray); };
+    if (grid_ != nullptr) return grid_->any_hits(rays, occluded, by_trees, executor);
     for_each_part(
         rays,
         occluded,
         executor,
         [&](std::span<const Ray> part, std::span<bool> answers) {
-            if (is_gridded(part))
-                grid_->any_hits(part, answers, answer);
-            else
-                std::transform(part.begin(), part.end(), answers.begin(), answer);
+            std::transform(part.begin(), part.end(), answers.begin(), by_trees);
         }
     );
 }

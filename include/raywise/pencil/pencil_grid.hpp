@@ -28,9 +28,10 @@ enum class Verdict : std::uint8_t { miss, hit, unknown };
 /// the apex that sees a triangle. A cell lists its triangles by depth; what two triangles of the
 /// cell hide from the emitter is not kept.
 ///
-/// A query is any ray that `pencil().holds`: from a lit point to the emitter, or from the emitter's
+/// Its rays are those that `pencil().holds`: from a lit point to the emitter, or from the emitter's
 /// side away. Answers are those of ExactKernel: never wrong, for any finite coordinates, and the
-/// same for every instruction set. `unknown` is said only
+/// same for every instruction set; a ray that is not `is_valid` misses. `unknown` is said only
+/// - for rays of another pencil;
 /// - for rays that begin behind two triangles of their cell, or whose closest hit may lie there,
 ///   unless a shadow ray asks for any hit and reaches the emitter;
 /// - for points very far outside the scene (beyond 4 times its distance from the apex, or 256 times
@@ -49,10 +50,7 @@ public:
 
     [[nodiscard]] const Pencil& pencil() const;
 
-    /// Whether queries with this ray are allowed: valid, and one that the pencil holds.
-    [[nodiscard]] bool covers(const Ray& ray) const { return is_valid(ray) && pencil().holds(ray); }
-
-    /// Whether something is hit in [t_min, t_max]. `ray` must be covered.
+    /// Whether something is hit in [t_min, t_max].
     [[nodiscard]] Verdict any_hit(const Ray& ray) const;
     [[nodiscard]] Verdict any_hit(const Ray& ray, PencilGridCounts& counts) const;
 
@@ -62,16 +60,17 @@ public:
     occluded(const Vec3& point, float t_min = 0, PrimId excluded = no_prim) const;
 
     /// The closest hit in [t_min, t_max]. `hit` is Hit{} for a miss, and anything when it is
-    /// unknown. `ray` must be covered.
+    /// unknown.
     [[nodiscard]] Verdict closest_hit(const Ray& ray, Hit& hit) const;
     [[nodiscard]] Verdict closest_hit(const Ray& ray, Hit& hit, PencilGridCounts& counts) const;
 
-    /// Calls `visit` once for every hit in [t_min, t_max], in no particular order. `ray` must be
-    /// covered. Unknown when there may be others, else whether there was one.
+    /// Calls `visit` once for every hit in [t_min, t_max], in no particular order. Unknown when
+    /// there may be others, else whether there was one.
     [[nodiscard]] Verdict all_hits(const Ray& ray, FunctionRef<void(const Hit&)> visit) const;
 
-    /// any_hit for every ray. All rays covered, equal sizes. Rays whose answer is unknown are given
-    /// to `otherwise`, which must be thread-safe. The answers do not depend on the threads.
+    /// any_hit for every ray; equal sizes. Rays whose answer is unknown are given to `otherwise`,
+    /// which must be thread-safe. The answers do not depend on the threads. Fastest when all are
+    /// shadow rays of the pencil.
     void any_hits(
         std::span<const Ray> rays,
         std::span<bool> hits,
@@ -79,7 +78,8 @@ public:
         const Executor& executor = serial_executor()
     ) const;
 
-    /// closest_hit for every ray; a miss is a default Hit, prim == no_prim. As any_hits.
+    /// closest_hit for every ray; a miss is a default Hit, prim == no_prim. As any_hits;
+    /// fastest when all come from an apex, with a t_min of 0.
     void closest_hits(
         std::span<const Ray> rays,
         std::span<Hit> hits,

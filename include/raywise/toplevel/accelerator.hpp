@@ -223,8 +223,7 @@ private:
     [[nodiscard]] bool is_cheaper(const Candidate& a, const Candidate& b) const;
     [[nodiscard]] bool is_better(const Candidate& a, const Candidate& b, float t_max) const;
 
-    /// Asks the area's grid: unknown when there is none, or the ray is not of its pencil. `ray`
-    /// must be valid.
+    /// Asks the area's grid: unknown when there is none, or the ray is not of its pencil.
     template <class Observer>
     Verdict closest_in_grid(AreaId area, const Ray& ray, Hit& hit, Observer& seen) const;
     template <class Observer>
@@ -327,19 +326,8 @@ private:
     /// more to it than one tree.
     [[nodiscard]] const WideBvh* whole_tree() const;
 
-    /// Whether the area's grid may be asked as it is: it exists, and its pencil holds the valid
-    /// ray. What is_valid would say of a parallel ray beyond its interval, the grid finds out
-    /// itself.
-    [[nodiscard]] bool is_gridded(const Ray& ray) const {
-        if (grid_ == nullptr || !grid_->pencil().holds(ray)) return false;
-        const bool is_parallel = grid_->pencil().kind() == Pencil::Kind::parallel;
-        return is_parallel ? ray.t_min >= 0 && ray.t_min <= ray.t_max : is_valid(ray);
-    }
-
     [[nodiscard]] std::optional<Hit> closest_hit_by_trees(const Ray& ray) const;
-
-    /// Whether the area's grid covers every ray.
-    [[nodiscard]] bool is_gridded(std::span<const Ray> rays) const;
+    [[nodiscard]] bool any_hit_by_trees(const Ray& ray) const;
 
     /// Whether the area's pencil holds every ray.
     [[nodiscard]] bool are_exact(std::span<const Ray> rays, const Executor& executor) const;

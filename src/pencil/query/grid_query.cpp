@@ -13,6 +13,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
@@ -41,7 +42,8 @@ template <Heading heading>
 Verdict all_hits_along(const Grid& grid, const Ray& ray, FunctionRef<void(const Hit&)> visit) {
     Spot spot{};
     const Where where = locate<heading>(grid, segment_of(ray), spot);
-    if (where == Where::unknown) return is_valid(ray) ? Verdict::unknown : Verdict::miss;
+    if (!is_valid(ray)) return Verdict::miss;
+    if (where == Where::unknown) return Verdict::unknown;
     bool found = false;
     const auto add = [&](PrimId id) HWY_ATTR {
         if (id == ray.excluded) return;
@@ -68,11 +70,25 @@ Verdict all_hits_along(const Grid& grid, const Ray& ray, FunctionRef<void(const 
     return found ? Verdict::hit : Verdict::miss;
 }
 
-HWY_INLINE Heading heading_of(const Grid& grid, const Ray& ray) {
-    const bool is_away = grid.pencil.kind() == Pencil::Kind::parallel
-                             ? ray.direction == grid.pencil.direction()
-                             : ray.origin == grid.pencil.apex();
-    return is_away ? Heading::from_emitter : Heading::to_emitter;
+template <Heading heading>
+using Along = std::integral_constant<Heading, heading>;
+
+/// Of rays toward the emitter.
+HWY_INLINE Vec3 shadow_direction(const Grid& grid, const Vec3& origin) {
+    return grid.pencil.kind() == Pencil::Kind::parallel ? -grid.pencil.direction()
+                                                        : grid.pencil.apex() - origin;
+}
+
+/// `ask`, a function of an Along, for a ray of the pencil.
+template <class Ask>
+HWY_INLINE Verdict ask_along(const Grid& grid, const Ray& ray, const Ask& ask) {
+    if (!(ray.t_min >= 0 && ray.t_min <= ray.t_max)) return Verdict::miss;
+    const bool is_parallel = grid.pencil.kind() == Pencil::Kind::parallel;
+    if (ray.direction == shadow_direction(grid, ray.origin) && (is_parallel || ray.t_max <= 1))
+        return ask(Along<Heading::to_emitter>());
+    if (is_parallel ? ray.direction == grid.pencil.direction() : ray.origin == grid.pencil.apex())
+        return ask(Along<Heading::from_emitter>());
+    return is_valid(ray) ? Verdict::unknown : Verdict::miss;
 }
 
 Verdict Occluded(const Grid& grid, const Vec3& point, float t_min, PrimId excluded) {
@@ -86,9 +102,9 @@ Verdict Occluded(const Grid& grid, const Vec3& point, float t_min, PrimId exclud
 
 template <class Count>
 HWY_INLINE Verdict any_hit_of(const Grid& grid, const Ray& ray, Count count) {
-    return heading_of(grid, ray) == Heading::to_emitter
-               ? any_hit_along<Heading::to_emitter>(grid, ray, count)
-               : any_hit_along<Heading::from_emitter>(grid, ray, count);
+    return ask_along(grid, ray, [&](auto along) HWY_ATTR {
+        return any_hit_along<along>(grid, ray, count);
+    });
 }
 
 Verdict AnyHit(const Grid& grid, const Ray& ray) {
@@ -101,9 +117,11 @@ Verdict AnyHitCounted(const Grid& grid, const Ray& ray, PencilGridCounts& counts
 
 template <class Count>
 HWY_INLINE Verdict closest_hit_of(const Grid& grid, const Ray& ray, Hit& hit, Count count) {
-    return heading_of(grid, ray) == Heading::to_emitter
-               ? closest_hit_along<Heading::to_emitter>(grid, ray, hit, count)
-               : closest_hit_along<Heading::from_emitter>(grid, ray, hit, count);
+    const Verdict verdict = ask_along(grid, ray, [&](auto along) HWY_ATTR {
+        return closest_hit_along<along>(grid, ray, hit, count);
+    });
+    if (verdict == Verdict::miss) hit = Hit{};
+    return verdict;
 }
 
 Verdict ClosestHit(const Grid& grid, const Ray& ray, Hit& hit) {
@@ -115,9 +133,9 @@ Verdict ClosestHitCounted(const Grid& grid, const Ray& ray, Hit& hit, PencilGrid
 }
 
 Verdict AllHits(const Grid& grid, const Ray& ray, FunctionRef<void(const Hit&)> visit) {
-    return heading_of(grid, ray) == Heading::to_emitter
-               ? all_hits_along<Heading::to_emitter>(grid, ray, visit)
-               : all_hits_along<Heading::from_emitter>(grid, ray, visit);
+    return ask_along(grid, ray, [&](auto along) HWY_ATTR {
+        return all_hits_along<along>(grid, ray, visit);
+    });
 }
 
 HWY_INLINE void put(Together& rays, std::size_t i, Vec3 place, float t, PrimId excluded) {
@@ -153,7 +171,6 @@ void OccludedBatch(const Grid& grid, const PointBatch& batch, Verdict* verdicts)
 }
 
 void AnyHitBatch(const Grid& grid, const Ray* batch, std::size_t batch_size, Verdict* verdicts) {
-    const bool is_parallel = grid.pencil.kind() == Pencil::Kind::parallel;
     const float t_max = shadow_t_max(grid);
     Together rays{};
     for (std::size_t first = 0; first < batch_size; first += together) {
@@ -161,10 +178,8 @@ void AnyHitBatch(const Grid& grid, const Ray* batch, std::size_t batch_size, Ver
         bool are_shadows = !grid.has_near;
         for (std::size_t i = 0; i < count; ++i) {
             const Ray& ray = batch[first + i];
-            are_shadows &= ray.t_max == t_max;
-            // A shadow ray toward a lamp has any direction but starts elsewhere.
-            are_shadows &= is_parallel ? ray.direction == -grid.pencil.direction()
-                                       : ray.origin != grid.pencil.apex();
+            are_shadows &= ray.direction == shadow_direction(grid, ray.origin);
+            are_shadows &= ray.t_min >= 0 && ray.t_min <= t_max && ray.t_max == t_max;
             put(rays, i, ray.origin, ray.t_min, ray.excluded);
         }
         const auto ray_of = [at = batch + first](std::size_t i) { return at[i]; };
@@ -191,7 +206,7 @@ void ClosestHitBatch(
         bool are_views = is_radial && !grid.has_near;
         for (std::size_t i = 0; i < count; ++i) {
             const Ray& ray = batch[first + i];
-            are_views &= ray.origin == grid.pencil.apex() && ray.t_min == 0;
+            are_views &= ray.origin == grid.pencil.apex() && ray.t_min == 0 && ray.t_max >= 0;
             put(rays, i, ray.direction, ray.t_max, ray.excluded);
         }
         if (are_views) {

@@ -57,7 +57,8 @@ HWY_INLINE Verdict look_through(
 template <class RayOf, class Count>
 HWY_NOINLINE std::optional<Verdict>
 any_hit_apart(const Grid& grid, RayOf ray, Where where, Count count) {
-    if (where == Where::unknown) return is_valid(ray()) ? Verdict::unknown : Verdict::miss;
+    if (!is_valid(ray())) return Verdict::miss;
+    if (where == Where::unknown) return Verdict::unknown;
     const bool is_hit_near = std::any_of(grid.near.begin(), grid.near.end(), [&](PrimId id) {
         return is_hit(grid, ray(), id, count);
     });
@@ -99,8 +100,10 @@ HWY_INLINE Verdict closest_hit_along(const Grid& grid, const Ray& ray, Hit& hit,
     count.query();
     Spot spot{};
     const Where where = locate<heading>(grid, segment_of(ray), spot);
+    if (where == Where::unknown || grid.has_near) [[unlikely]]
+        if (!is_valid(ray)) return Verdict::miss;
     if (where == Where::unknown) [[unlikely]]
-        return is_valid(ray) ? Verdict::unknown : Verdict::miss;
+        return Verdict::unknown;
     Closest<heading, Count> closest(grid, ray, hit, count);
     for (const PrimId id : grid.near)
         closest.add(id);
