@@ -20,6 +20,7 @@
 #include <memory>
 #include <optional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace raywise {
@@ -193,6 +194,61 @@ TEST(PencilGrid, AgreesWithBruteForceFromDenormalsTo2To60) {
     compare_on_soups(Coordinates::wild, 15, 150, 60);
 }
 
+/// A room of large walls, each in two triangles, with small ones in it: one triangle spans from
+/// near the lamp to far away, many in one cell.
+Soup room(Rng& rng, int small) {
+    Soup soup;
+    for (int axis = 0; axis < 3; ++axis)
+        for (const float side : {0.0F, 1.0F}) {
+            std::array<Vec3, 4> corners{};
+            for (std::size_t k = 0; k < 4; ++k) {
+                corners[k][axis] = side;
+                corners[k][(axis + 1) % 3] = k == 1 || k == 2 ? 8.0F : -8.0F;
+                corners[k][(axis + 2) % 3] = k >= 2 ? 8.0F : -8.0F;
+            }
+            soup.add({corners[0], corners[1], corners[2]});
+            soup.add({corners[0], corners[2], corners[3]});
+        }
+    for (int i = 0; i < small; ++i) {
+        const Vec3 at{rng.uniform(), rng.uniform(), rng.uniform()};
+        const auto near = [&] {
+            return at + Vec3{rng.uniform(), rng.uniform(), rng.uniform()} * 0.1F;
+        };
+        soup.add({near(), near(), near()});
+    }
+    return soup;
+}
+
+TEST(PencilGrid, AgreesWithBruteForceOnWallsSeenFromTheirEdge) {
+    Tally tally;
+    for (int i = 0; i < 60 && !testing::Test::HasFatalFailure(); ++i) {
+        Rng rng(23, static_cast<std::uint64_t>(i));
+        const Soup soup = room(rng, i % 3 == 0 ? 0 : 20);
+        Vec3 lamp{rng.uniform(), rng.uniform(), rng.uniform()};
+        // As near to a wall's plane as 2^-24, also behind it, or on it.
+        const float near = std::ldexp(1.0F, -static_cast<int>(rng.below(25)));
+        lamp[static_cast<int>(rng.below(3))] = i % 5 == 0 ? 0 : i % 2 == 0 ? near : 1 - near;
+        const Pencil pencil =
+            i % 7 == 6 ? Pencil::parallel(lamp + Vec3{-0.5F, near, 0.125F}) : Pencil::radial(lamp);
+        PencilGridParams params;
+        params.bytes_per_triangle = 1e9;
+        params.cell_size = i % 4 == 0 ? 1 : 16;
+        PencilGrid grid = build_pencil_grid(soup.view(), pencil, params);
+        const auto sets = PencilGrid::instruction_sets();
+        for (int k = 0; k < 600 && !testing::Test::HasFatalFailure(); ++k) {
+            grid.use_instruction_set(sets[static_cast<std::size_t>(rng.below(sets.size()))]);
+            Ray ray = random_pencil_ray(rng, pencil, soup, Coordinates::smooth);
+            // A hair before the surface, or a hair behind.
+            if (rng.below(2) == 0)
+                ray.t_min = std::ldexp(rng.uniform(), -static_cast<int>(rng.below(24)));
+            if (!is_valid(ray)) continue;
+            SCOPED_TRACE(testing::Message() << "room " << i << ", ray " << k);
+            expect_same_as_brute_force(grid, soup.view(), ray, tally);
+        }
+    }
+    EXPECT_LT(tally.unknown_any, tally.queries / 4) << tally.queries;
+}
+
 /// Found by a longer run: the product of three such differences is no float.
 TEST(PencilGrid, KnowsTheClosestHitWhereProductsOverflow) {
     Soup soup;
@@ -240,6 +296,63 @@ TEST(PencilGrid, TakesPointsThatAreNoPlacesForAMiss) {
         EXPECT_EQ(grid.occluded({infinity, 0, 0}), Verdict::miss);
         EXPECT_EQ(grid.occluded({0, 0, -infinity}), Verdict::miss);
         EXPECT_EQ(grid.occluded({0, 0, 3}), Verdict::miss);
+    }
+}
+
+TEST(PencilGrid, KnowsNothingOfOtherPencilsRaysAndMissesInvalidOnes) {
+    constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+    Soup soup;
+    soup.add({{-4, -4, 1}, {4, -4, 1}, {0, 8, 1}});
+    soup.add({{-1, -1, 3}, {1, -1, 3}, {0, 2, 3}}); // at the apex of the third pencil
+    for (const Pencil& pencil :
+         {Pencil::parallel({0, 0, -1}), Pencil::radial({0, 0, 5}), Pencil::radial({0, 0, 3})}) {
+        const PencilGrid grid = build_pencil_grid(soup.view(), pencil);
+        const Ray shadow = pencil.shadow_ray({0.125F, 0.25F, 0});
+        std::vector<Ray> rays(80, shadow);
+        std::vector<Verdict> wanted(80, Verdict::hit);
+        const auto put = [&](std::size_t i, const Ray& ray, Verdict verdict) {
+            rays[i] = ray;
+            wanted[i] = verdict;
+        };
+        const auto changed = [&](auto&& change) {
+            Ray ray = shadow;
+            change(ray);
+            return ray;
+        };
+        put(1, changed([](Ray& r) { r.direction.x += 0.5F; }), Verdict::unknown);
+        put(3, {{1, 2, 0}, {0.5F, 0, 1}}, Verdict::unknown);
+        put(35, changed([](Ray& r) { r.direction = {}; }), Verdict::miss);
+        put(36, changed([](Ray& r) { r.direction.y = nan; }), Verdict::miss);
+        put(37, changed([](Ray& r) { r.direction.z = infinity; }), Verdict::miss);
+        put(38, changed([](Ray& r) { r.origin.z = nan; }), Verdict::miss);
+        put(39, changed([](Ray& r) { r.t_min = -1; }), Verdict::miss);
+        put(40, changed([](Ray& r) { r.t_min = nan; }), Verdict::miss);
+        put(41, changed([](Ray& r) { r.t_max = nan; }), Verdict::miss);
+        put(42, changed([](Ray& r) { std::swap(r.t_min, r.t_max); }), Verdict::miss);
+        if (pencil.kind() == Pencil::Kind::radial) {
+            const Vec3 apex = pencil.apex();
+            put(65, {apex, {}}, Verdict::miss);
+            put(66, {apex, {nan, 0, -1}}, Verdict::miss);
+            put(67, {apex, {0, -infinity, 0}}, Verdict::miss);
+            put(68, {apex, {0, 0, -1}, 0, nan}, Verdict::miss);
+            put(69, {apex, {0, 0, -1}, 0, -1}, Verdict::miss);
+        }
+        const auto any = std::make_unique<bool[]>(rays.size());
+        std::vector<Hit> closest(rays.size());
+        std::size_t asked = 0;
+        grid.any_hits(rays, {any.get(), rays.size()}, [&](const Ray&) { return ++asked > 0; });
+        grid.closest_hits(rays, closest, [&](const Ray&) { return Hit{.prim = PrimId{9}}; });
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            SCOPED_TRACE(i);
+            Hit hit;
+            EXPECT_EQ(grid.any_hit(rays[i]), wanted[i]);
+            EXPECT_EQ(grid.closest_hit(rays[i], hit), wanted[i]);
+            EXPECT_EQ(grid.all_hits(rays[i], [](const Hit&) {}), wanted[i]);
+            EXPECT_EQ(any[i], wanted[i] != Verdict::miss);
+            EXPECT_EQ(closest[i].prim == no_prim, wanted[i] == Verdict::miss);
+            EXPECT_EQ(closest[i].prim == PrimId{9}, wanted[i] == Verdict::unknown);
+        }
+        EXPECT_EQ(asked, 2U);
     }
 }
 
