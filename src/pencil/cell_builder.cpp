@@ -4,10 +4,10 @@
 #include <raywise/core/error.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <tuple>
 
 namespace raywise::pencil_detail {
 
@@ -19,9 +19,16 @@ constexpr std::int32_t never = std::numeric_limits<std::int32_t>::max();
 /// triangles would be listed again and again.
 constexpr double worthwhile_growth = 2.5;
 
-/// number * 2^shift
-double scaled(double number, unsigned shift) {
-    return number * static_cast<double>(std::uint64_t{1} << shift);
+/// The least shift >= 0, or one more, with which limit * 2^shift >= number: greater than any that
+/// is used for what is too large or no number.
+unsigned shift_to(double limit, double number) {
+    constexpr unsigned exponent_of_1 = 1023;
+    const auto bits = std::bit_cast<std::uint64_t>(std::max(number / limit, 0x1p-1));
+    return static_cast<unsigned>(bits >> 52U & 0x7FFU) - (exponent_of_1 - 1);
+}
+
+double power_of_2(unsigned exponent) {
+    return static_cast<double>(std::uint64_t{1} << exponent);
 }
 
 std::size_t level_of(int shift) {
@@ -181,9 +188,10 @@ void CellBuilder::add_list(std::vector<Reference>& references, Cell& cell) {
     if (is_radial_) merge_parts(references);
     const std::size_t count = references.size();
     if (count > ListHead::most_references) throw Error("pencil grid: too many triangles in a cell");
-    std::sort(references.begin(), references.end(), [](const Reference& a, const Reference& b) {
-        return std::tie(a.least, a.prim) < std::tie(b.least, b.prim);
-    });
+    order_.clear();
+    for (std::uint32_t i = 0; i < count; ++i)
+        order_.push_back({references[i].least, references[i].prim, i});
+    std::sort(order_.begin(), order_.end());
     ++statistics_.leaves;
     statistics_.references += count;
     const std::size_t at = grow(list_bytes(count));
@@ -196,13 +204,13 @@ void CellBuilder::add_list(std::vector<Reference>& references, Cell& cell) {
     to += sizeof head;
     for (std::size_t first = 0; first < count; first += chunk_size) {
         if (first > 0) {
-            std::memcpy(to, &references[first].least, chunk_head_bytes);
+            std::memcpy(to, &order_[first].least, chunk_head_bytes);
             to += chunk_head_bytes;
         }
         const std::size_t size = std::min(chunk_size, count - first);
         const std::size_t stride = padded(size);
         for (std::size_t i = 0; i < size; ++i) {
-            const Reference& reference = references[first + i];
+            const Reference& reference = references[order_[first + i].index];
             const auto put = [&](std::size_t row, auto value) {
                 std::memcpy(to + 2 * row * stride + sizeof value * i, &value, sizeof value);
             };
@@ -264,10 +272,9 @@ void CellBuilder::set_near(
     if (widest == nullptr) return;
     // Over a whole cell.
     const double steepest = 2 * std::max(std::abs(widest->plane.u), std::abs(widest->plane.v));
-    std::uint32_t shift = 0;
-    while (scaled(16000, shift) < steepest)
-        if (++shift > 14) return;
-    const double unit = scaled(1, shift);
+    const unsigned shift = shift_to(16000, steepest);
+    if (shift > 14) return;
+    const double unit = power_of_2(shift);
     const double whole_u = nearest(2 * widest->plane.u / unit);
     const double whole_v = nearest(2 * widest->plane.v / unit);
     const double slope_u = whole_u * unit;
@@ -304,26 +311,25 @@ CellBuilder::DepthRows CellBuilder::depth_rows(const Reference& reference) const
     const double least = piece.is_near ? 0 : reference.least;
     const double greatest = piece.is_near ? deepest : reference.greatest;
     const double middle = std::floor(0.5 * (least + greatest));
-    std::uint8_t shift = 0;
-    while (scaled(depth_doubt, shift) < greatest - middle)
-        ++shift;
-    const DepthRows level{0, 0, static_cast<std::int32_t>(middle), shift};
+    const unsigned level_shift = shift_to(depth_doubt, greatest - middle);
+    const DepthRows level{
+        0, 0, static_cast<std::int32_t>(middle), static_cast<std::uint8_t>(level_shift)
+    };
 
     const DepthPlane& plane = reference.plane;
     if (!plane.is_known || piece.is_near) return level;
     const double steep = std::abs(plane.u) + std::abs(plane.v);
     // Rounding a slope takes off at most 1/2, rounding its product with a place as much: 2 in all.
-    std::uint8_t plane_shift = 0;
-    while (scaled(32000, plane_shift) < steep ||
-           scaled(depth_doubt - 2, plane_shift) < plane.error + 1)
-        if (++plane_shift >= shift) return level;
+    const unsigned shift =
+        std::max(shift_to(32000, steep), shift_to(depth_doubt - 2, plane.error + 1));
     // Far from the triangle, its plane may be anywhere.
-    if (!(steep < 0x1p30 && plane.at > -0x1p30 && plane.at < 0x1.fp30)) return level;
+    if (shift >= level_shift || !(plane.at > -0x1p30 && plane.at < 0x1.fp30)) return level;
+    const double steps = 1 / power_of_2(shift);
     return {
-        static_cast<std::int16_t>(nearest(plane.u / scaled(1, plane_shift))),
-        static_cast<std::int16_t>(nearest(plane.v / scaled(1, plane_shift))),
+        static_cast<std::int16_t>(nearest(plane.u * steps)),
+        static_cast<std::int16_t>(nearest(plane.v * steps)),
         static_cast<std::int32_t>(nearest(plane.at)),
-        plane_shift
+        static_cast<std::uint8_t>(shift)
     };
 }
 

@@ -59,6 +59,15 @@ private:
         std::uint8_t shift;
     };
 
+    /// Where a reference stands in its list.
+    struct Place {
+        std::int32_t least;
+        PrimId prim;
+        std::uint32_t index;
+
+        friend auto operator<=>(const Place&, const Place&) = default;
+    };
+
     Cell build(std::span<const std::uint32_t> pieces, const Window& window, int shift);
     void set_near(Cell& cell, const std::vector<Reference>& references, const Window& window) const;
     [[nodiscard]] DepthRows depth_rows(const Reference& reference) const;
@@ -75,6 +84,7 @@ private:
     const EdgeLines& edges_;
     const PencilGridParams& params_;
     std::vector<std::byte> lists_;
+    std::vector<Place> order_; ///< of the list being written
     std::vector<std::size_t> splits_;                  ///< where children are
     std::array<std::vector<Reference>, 5> references_; ///< by level
     std::array<std::array<std::vector<std::uint32_t>, children>, 5> child_pieces_; ///< by level
