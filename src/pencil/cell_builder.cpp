@@ -38,37 +38,16 @@ std::size_t level_of(int shift) {
 } // namespace
 
 Cell CellBuilder::build(std::span<const std::uint32_t> pieces, const Window& window, int shift) {
+    const std::int32_t cover = cover_of(pieces, window);
     std::vector<Reference>& references = references_[level_of(shift)];
     references.clear();
-    for (const std::uint32_t index : pieces) {
-        const Piece& piece = pieces_[index];
-        const Footprint place = footprint(piece, window);
-        if (place.least_u > place.greatest_u) continue;
-        const SeenTriangle seen = edges_.see(piece, place, window);
-        if (seen.edges.is_missed) continue;
-        double least = place.least_key;
-        double greatest = place.greatest_key;
-        if (is_radial_) {
-            // Both are below zero.
-            least *= 1 + key_rounding;
-            greatest *= 1 - key_rounding;
-        }
-        references.push_back(
-            {place,
-             seen.depth,
-             std::max(depth_units(map_, least) - 1, 0),
-             depth_units(map_, greatest) + 1,
-             seen.edges,
-             index,
-             piece.prim}
-        );
-    }
+    for (const std::uint32_t index : pieces)
+        add_reference(references, index, window, cover);
     Cell cell;
     if (references.empty()) {
         ++statistics_.empty;
         return cell;
     }
-    const std::int32_t cover = cull(references);
     if (cover != never) cell.cover = static_cast<std::uint32_t>(cover) & Cell::never;
     set_near(cell, references, window);
     if (references.size() > params_.leaf_size && shift > place_bits &&
@@ -78,34 +57,68 @@ Cell CellBuilder::build(std::span<const std::uint32_t> pieces, const Window& win
     return cell;
 }
 
-/// Drops what two triangles that fill the window hide; returns their depth as a cell's cover, or
-/// never.
-std::int32_t CellBuilder::cull(std::vector<Reference>& references) {
+std::int32_t CellBuilder::least_depth(double key) const {
+    // Radial ones are below zero.
+    return std::max(depth_units(map_, is_radial_ ? key * (1 + key_rounding) : key) - 1, 0);
+}
+
+std::int32_t CellBuilder::greatest_depth(double key) const {
+    return depth_units(map_, is_radial_ ? key * (1 - key_rounding) : key) + 1;
+}
+
+/// The depth, as a cell's cover, behind which two triangles that fill the window hide everything;
+/// or never.
+std::int32_t
+CellBuilder::cover_of(std::span<const std::uint32_t> pieces, const Window& window) const {
     // One of the two may be the triangle that a ray starts on and does not hit.
     std::int32_t first = never;
     std::int32_t second = never;
     PrimId first_prim = no_prim;
-    for (const Reference& reference : references) {
-        if (!reference.place.fills) continue;
-        if (reference.prim == first_prim) {
-            first = std::min(first, reference.greatest);
-        } else if (reference.greatest < first) {
+    for (const std::uint32_t index : pieces) {
+        const Piece& piece = pieces_[index];
+        if (!fills(piece, window)) continue;
+        const std::int32_t depth = greatest_depth(footprint(piece, window).greatest_key);
+        if (piece.prim == first_prim) {
+            first = std::min(first, depth);
+        } else if (depth < first) {
             second = first;
-            first = reference.greatest;
-            first_prim = reference.prim;
+            first = depth;
+            first_prim = piece.prim;
         } else {
-            second = std::min(second, reference.greatest);
+            second = std::min(second, depth);
         }
     }
-    if (second == never) return never;
-    const std::int32_t cover = second >> cover_shift;
-    const auto is_hidden = [&](const Reference& reference) {
-        return (reference.least >> cover_shift) > cover;
-    };
-    const auto kept = std::remove_if(references.begin(), references.end(), is_hidden);
-    statistics_.culled += static_cast<std::size_t>(references.end() - kept);
-    references.erase(kept, references.end());
-    return cover;
+    return second == never ? never : second >> cover_shift;
+}
+
+/// Unless the piece is hidden behind the cover, or no ray of the window meets it.
+void CellBuilder::add_reference(
+    std::vector<Reference>& references,
+    std::uint32_t index,
+    const Window& window,
+    std::int32_t cover
+) {
+    const Piece& piece = pieces_[index];
+    const auto is_hidden = [&](std::int32_t least) { return (least >> cover_shift) > cover; };
+    const auto nearest_key =
+        static_cast<double>(std::min({piece.key[0], piece.key[1], piece.key[2]}));
+    if (is_hidden(least_depth(nearest_key))) {
+        ++statistics_.culled;
+        return;
+    }
+    const Footprint place = footprint(piece, window);
+    if (place.least_u > place.greatest_u) return;
+    const std::int32_t least = least_depth(place.least_key);
+    if (is_hidden(least)) {
+        ++statistics_.culled;
+        return;
+    }
+    const SeenTriangle seen = edges_.see(piece, place, window);
+    if (seen.edges.is_missed) return;
+    references.push_back(
+        {place, seen.depth, least, greatest_depth(place.greatest_key), seen.edges, index, piece.prim
+        }
+    );
 }
 
 bool CellBuilder::split(

@@ -71,7 +71,16 @@ private:
     Cell build(std::span<const std::uint32_t> pieces, const Window& window, int shift);
     void set_near(Cell& cell, const std::vector<Reference>& references, const Window& window) const;
     [[nodiscard]] DepthRows depth_rows(const Reference& reference) const;
-    [[nodiscard]] std::int32_t cull(std::vector<Reference>& references);
+    [[nodiscard]] std::int32_t least_depth(double key) const;
+    [[nodiscard]] std::int32_t greatest_depth(double key) const;
+    [[nodiscard]] std::int32_t
+    cover_of(std::span<const std::uint32_t> pieces, const Window& window) const;
+    void add_reference(
+        std::vector<Reference>& references,
+        std::uint32_t index,
+        const Window& window,
+        std::int32_t cover
+    );
     [[nodiscard]] bool
     split(const std::vector<Reference>& references, const Window& window, int shift, Cell& cell);
     void add_list(std::vector<Reference>& references, Cell& cell);
@@ -84,7 +93,7 @@ private:
     const EdgeLines& edges_;
     const PencilGridParams& params_;
     std::vector<std::byte> lists_;
-    std::vector<Place> order_; ///< of the list being written
+    std::vector<Place> order_;                         ///< of the list being written
     std::vector<std::size_t> splits_;                  ///< where children are
     std::array<std::vector<Reference>, 5> references_; ///< by level
     std::array<std::array<std::vector<std::uint32_t>, children>, 5> child_pieces_; ///< by level

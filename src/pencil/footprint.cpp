@@ -53,6 +53,15 @@ struct Bounds {
     std::int64_t least_u, greatest_u, least_v, greatest_v;
 };
 
+Bounds widened(const Window& window, std::int32_t margin) {
+    return {
+        std::int64_t{window.first_u} - margin,
+        std::int64_t{window.first_u} + window.side + margin,
+        std::int64_t{window.first_v} - margin,
+        std::int64_t{window.first_v} + window.side + margin
+    };
+}
+
 /// Whether the window, enlarged to `bounds`, is strictly inside the snapped piece.
 bool is_inside(const Piece& piece, const Bounds& bounds) {
     const auto at = [&](std::size_t i) {
@@ -103,7 +112,7 @@ Extent extent(const Polygon& polygon) {
     return e;
 }
 
-constexpr Footprint nothing{1, 0, 1, 0, 0, 0, false};
+constexpr Footprint nothing{1, 0, 1, 0, 0, 0};
 
 } // namespace
 
@@ -124,6 +133,14 @@ std::optional<KeyPlane> key_plane(const Piece& piece) {
     };
 }
 
+bool fills(const Piece& piece, const Window& window) {
+    const auto [low_u, high_u] = std::minmax({piece.u[0], piece.u[1], piece.u[2]});
+    const auto [low_v, high_v] = std::minmax({piece.v[0], piece.v[1], piece.v[2]});
+    const Bounds wide = widened(window, piece.margin);
+    return low_u < wide.least_u && high_u > wide.greatest_u && low_v < wide.least_v &&
+           high_v > wide.greatest_v && is_inside(piece, wide);
+}
+
 Footprint footprint(const Piece& piece, const Window& window) {
     const std::int32_t m = piece.margin;
     const auto [low_u, high_u] = std::minmax({piece.u[0], piece.u[1], piece.u[2]});
@@ -141,18 +158,11 @@ Footprint footprint(const Piece& piece, const Window& window) {
             std::max(low_v - m, window.first_v),
             std::min(high_v + m, last_v),
             static_cast<double>(least_key),
-            static_cast<double>(greatest_key),
-            false
+            static_cast<double>(greatest_key)
         };
 
-    const Bounds wide{
-        std::int64_t{window.first_u} - m,
-        std::int64_t{window.first_u} + window.side + m,
-        std::int64_t{window.first_v} - m,
-        std::int64_t{window.first_v} + window.side + m
-    };
-    if (low_u < wide.least_u && high_u > wide.greatest_u && low_v < wide.least_v &&
-        high_v > wide.greatest_v && is_inside(piece, wide)) {
+    const Bounds wide = widened(window, m);
+    if (fills(piece, window)) {
         double least = static_cast<double>(least_key);
         double greatest = static_cast<double>(greatest_key);
         if (const auto plane = key_plane(piece)) {
@@ -164,7 +174,7 @@ Footprint footprint(const Piece& piece, const Window& window) {
             least = std::max(least, middle - change);
             greatest = std::min(greatest, middle + change);
         }
-        return {window.first_u, last_u, window.first_v, last_v, least, greatest, true};
+        return {window.first_u, last_u, window.first_v, last_v, least, greatest};
     }
 
     Polygon polygon;
@@ -188,8 +198,7 @@ Footprint footprint(const Piece& piece, const Window& window) {
         limited(std::floor(e.least_v) - m, window.first_v, last_v),
         limited(std::ceil(e.greatest_v) + m, window.first_v, last_v),
         e.least_key,
-        e.greatest_key,
-        false
+        e.greatest_key
     };
 }
 

@@ -22,11 +22,13 @@ struct Footprint {
     std::int32_t least_u, greatest_u;
     std::int32_t least_v, greatest_v;
     double least_key, greatest_key;
-    bool fills; ///< whether every ray of the window meets the inside of the piece
 };
 
 /// Bounds may be wider than need be for pieces smaller than the window.
 [[nodiscard]] Footprint footprint(const Piece& piece, const Window& window);
+
+/// Whether every ray of the window meets the inside of the piece.
+[[nodiscard]] bool fills(const Piece& piece, const Window& window);
 
 /// The plane of a piece: key = key_at + slope_u * (u - at_u) + slope_v * (v - at_v), in units.
 struct KeyPlane {
