@@ -256,7 +256,7 @@ std::unique_ptr<BuiltFace> build_face(
         measure(pieces, executor),
         pieces.size(),
         is_radial,
-        records.greatest,
+        records.greatest(),
         params.cell_size * coarsening
     );
     built->pieces = snap(pieces, built->face, rounding, executor);

@@ -23,72 +23,8 @@ namespace {
 
 using namespace pencil_detail;
 
-constexpr std::size_t chunk = 1 << 13;
-
 /// The free part of the cap on a grid's bytes.
 constexpr std::size_t least_bytes = 1 << 16;
-
-/// How near to the apex, as a share of the reach, triangles are listed apart: nearer ones could be
-/// met by rays that stray too far from their places.
-constexpr double near_share = 0x1p-17;
-
-struct Ids {
-    std::vector<PrimId> ids; ///< of finite triangles, ascending
-    double greatest = 0;     ///< magnitude of a coordinate
-};
-
-/// Copies the triangles into records.
-Ids copy(const TriangleView& triangles, float* records, const Executor& executor) {
-    struct Part {
-        std::vector<PrimId> ids;
-        float greatest = 0;
-    };
-
-    const std::size_t count = triangles.size();
-    std::vector<Part> parts((count + chunk - 1) / chunk);
-    executor.for_each_chunk(count, chunk, [&](std::size_t begin, std::size_t end) {
-        Part& part = parts[begin / chunk];
-        part.ids.reserve(end - begin);
-        for (std::size_t i = begin; i < end; ++i) {
-            const Triangle t = triangles[to_prim(i)];
-            float* to = records + i * record_floats;
-            for (int axis = 0; axis < 3; ++axis) {
-                to[3 * axis] = t.v0[axis];
-                to[3 * axis + 1] = t.v1[axis];
-                to[3 * axis + 2] = t.v2[axis];
-            }
-            if (!is_finite(t.v0) || !is_finite(t.v1) || !is_finite(t.v2)) continue;
-            for (std::size_t k = 0; k < record_floats; ++k)
-                part.greatest = std::max(part.greatest, std::abs(to[k]));
-            part.ids.push_back(to_prim(i));
-        }
-    });
-    Ids all;
-    all.ids.reserve(count);
-    for (const Part& part : parts) {
-        all.ids.insert(all.ids.end(), part.ids.begin(), part.ids.end());
-        all.greatest = std::max(all.greatest, static_cast<double>(part.greatest));
-    }
-    return all;
-}
-
-/// The triangles whose boxes meet the cube of half side `nearest` around the apex.
-std::vector<PrimId> find_near(const Records& records, Vec3d apex, double nearest) {
-    std::vector<PrimId> near;
-    const double half = nearest * (1 + 0x1p-3);
-    for (const PrimId id : records.ids) {
-        const float* record = records.values + to_index(id) * record_floats;
-        bool meets = true;
-        for (int axis = 0; axis < 3; ++axis) {
-            const auto [low, high] =
-                std::minmax({record[3 * axis], record[3 * axis + 1], record[3 * axis + 2]});
-            meets = meets && static_cast<double>(low) - apex[axis] <= half &&
-                    static_cast<double>(high) - apex[axis] >= -half;
-        }
-        if (meets) near.push_back(id);
-    }
-    return near;
-}
 
 /// Larger coordinates are left to exact arithmetic. Differences to points within reach are below
 /// 2^10 of them, and products of three are the largest numbers.
@@ -115,7 +51,7 @@ RawFaces raw_faces(PencilGrid::Data& data, const Records& records, const Executo
         map.sign = d[axis] > 0 ? 1 : -1;
         map.slope_u = d[map.axis_u] / d[axis];
         map.slope_v = d[map.axis_v] / d[axis];
-        map.reach = 256 * records.greatest;
+        map.reach = 256 * records.greatest();
         map.shear_u = direction[map.axis_u] / direction[axis];
         map.shear_v = direction[map.axis_v] / direction[axis];
         map.speed = std::abs(direction[axis]);
@@ -123,48 +59,31 @@ RawFaces raw_faces(PencilGrid::Data& data, const Records& records, const Executo
         const float whole = 1.01F * static_cast<float>(2 * map.reach) / map.speed;
         map.whole_t = std::isfinite(whole) ? whole : std::numeric_limits<float>::quiet_NaN();
         // Without triangles nothing is too far away.
-        if (records.ids.empty()) map.reach = std::numeric_limits<double>::infinity();
-        data.is_tame = records.greatest < tame;
+        if (records.ids().empty()) map.reach = std::numeric_limits<double>::infinity();
+        data.is_tame = records.greatest() < tame;
         set_lanes(map, false);
         faces.pieces[0] = parallel_pieces(records, direction, executor);
         return faces;
     }
     const Vec3d apex = data.apex;
-    double farthest = 0;
-    for (const PrimId id : records.ids) {
-        const float* record = records.values + to_index(id) * record_floats;
-        for (int k = 0; k < 9; ++k)
-            farthest = std::max(farthest, std::abs(static_cast<double>(record[k]) - apex[k / 3]));
-    }
-    const double reach =
-        records.ids.empty() ? std::numeric_limits<double>::infinity() : 4 * farthest;
+    Surroundings around = look_around(records, apex, executor);
+    const double farthest = records.farthest_from(apex);
     data.is_tame =
-        std::max({records.greatest, farthest, std::abs(apex.x), std::abs(apex.y), std::abs(apex.z)}
+        std::max(
+            {records.greatest(), farthest, std::abs(apex.x), std::abs(apex.y), std::abs(apex.z)}
         ) < tame;
-    const double nearest = std::max(reach * near_share, 0x1p-140);
-    data.near = find_near(records, apex, nearest);
+    for (std::size_t face = 0; face < 6; ++face) {
+        FaceMap& map = faces.maps[face];
+        map.axis = static_cast<int>(face / 2);
+        map.axis_u = (map.axis + 1) % 3;
+        map.axis_v = (map.axis + 2) % 3;
+        map.sign = face % 2 == 0 ? 1 : -1;
+        map.reach = around.reach;
+        set_lanes(map, true);
+        faces.pieces[face] = radial_pieces(records, around, face, executor);
+    }
+    data.near = std::move(around.near);
     data.has_near = !data.near.empty();
-    for (int axis = 0; axis < 3; ++axis)
-        for (const int side : {0, 1}) {
-            const auto face = static_cast<std::size_t>(2 * axis + side);
-            FaceMap& map = faces.maps[face];
-            map.axis = axis;
-            map.axis_u = (axis + 1) % 3;
-            map.axis_v = (axis + 2) % 3;
-            map.sign = side == 0 ? 1 : -1;
-            map.reach = reach;
-            set_lanes(map, true);
-            faces.pieces[face] = radial_pieces(
-                records,
-                data.pencil.apex(),
-                axis,
-                side == 0 ? 1 : -1,
-                nearest,
-                reach,
-                data.near,
-                executor
-            );
-        }
     return faces;
 }
 
@@ -259,9 +178,7 @@ PencilGrid build_pencil_grid(
     data->kernels = &best_kernels();
     if (pencil.kind() == Pencil::Kind::radial) data->apex = to_double(pencil.apex());
     data->triangles = triangles;
-    const LargeBuffer<float> values(count * record_floats);
-    const Ids ids = copy(triangles, values.get(), executor);
-    const Records records{values.get(), ids.ids, ids.greatest};
+    const Records records(triangles, executor);
 
     const RawFaces raw = raw_faces(*data, records, executor);
     const double cap = params.bytes_per_triangle * static_cast<double>(count) + least_bytes;

@@ -256,14 +256,14 @@ EdgeLines::EdgeLines(
 )
     : map_(map)
     , is_radial_(is_radial)
-    , records_(records.values)
+    , records_(records)
     , apex_(apex)
     , place_error_(rounding + 0.5) {
     // A place is a sum of four products, off by the roundings of the largest.
     for (std::size_t lane = 0; lane < 2; ++lane) {
         double largest = std::abs(map.columns[3][lane]);
         for (std::size_t axis = 0; axis < 3; ++axis)
-            largest = std::max(largest, std::abs(map.columns[axis][lane]) * records.greatest);
+            largest = std::max(largest, std::abs(map.columns[axis][lane]) * records.greatest());
         off_ = std::max(off_, 0x1p-49 * largest);
     }
 }
@@ -292,10 +292,11 @@ DepthPlane EdgeLines::found_by_place(const DepthPlane& plane, const Window& wind
 
 SeenTriangle
 EdgeLines::see(const Piece& piece, const Footprint& bounds, const Window& window) const {
-    const float* r = records_ + to_index(piece.prim) * record_floats;
-    std::array<Vec3d, 3> vertices{};
-    for (std::size_t i = 0; i < 3; ++i)
-        vertices[i] = to_double(Vec3{r[i], r[3 + i], r[6 + i]});
+    const std::array<Vec3d, 3> vertices{
+        records_.vertex(piece.prim, 0),
+        records_.vertex(piece.prim, 1),
+        records_.vertex(piece.prim, 2)
+    };
     const Lines lines = is_radial_ ? radial_lines(map_, vertices, apex_, window)
                                    : parallel_lines(map_, vertices, window, off_);
     const double place_error = piece.margin / (window.side * 0.5);

@@ -55,7 +55,7 @@ private:
 
     const FaceMap& map_;
     bool is_radial_;
-    const float* records_;
+    const Records& records_;
     Vec3d apex_;
     double place_error_; ///< how far, in units, a query is from its place where it begins, at most
     double off_ = 0;     ///< parallel: how far computed places of vertices may be off, in units

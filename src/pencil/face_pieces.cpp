@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 namespace raywise::pencil_detail {
 
@@ -11,21 +12,23 @@ namespace {
 
 constexpr std::size_t chunk = 1 << 13;
 
-/// Vertex `corner` of a record.
-Vec3d vertex(const Records& records, PrimId id, std::size_t corner) {
-    const float* record = records.values + to_index(id) * record_floats;
-    return to_double(Vec3{record[corner], record[3 + corner], record[6 + corner]});
-}
+/// How near to the apex, as a share of the reach, triangles are listed apart: nearer ones could be
+/// met by rays that stray too far from their places.
+constexpr double near_share = 0x1p-17;
 
-/// Calls `add(id, pieces)` for every triangle, in parallel; returns all pieces in order.
+/// Rays of a cube face may stray beyond its edges.
+constexpr double edge = 1 + 0x1p-4;
+
+/// Calls `add(index, pieces)` for every one of the records' ids, in parallel; returns all pieces in
+/// order.
 template <class Add>
 std::vector<RawPiece> collect(const Records& records, const Executor& executor, const Add& add) {
-    const std::size_t count = records.ids.size();
+    const std::size_t count = records.ids().size();
     std::vector<std::vector<RawPiece>> parts((count + chunk - 1) / chunk);
     executor.for_each_chunk(count, chunk, [&](std::size_t begin, std::size_t end) {
         std::vector<RawPiece>& part = parts[begin / chunk];
         for (std::size_t i = begin; i < end; ++i)
-            add(records.ids[i], part);
+            add(i, part);
     });
     std::vector<std::size_t> starts(parts.size() + 1);
     for (std::size_t i = 0; i < parts.size(); ++i)
@@ -64,6 +67,29 @@ void cut(Polygon& polygon, Vec3d normal, double limit) {
     polygon = kept;
 }
 
+/// The cube face that alone sees the triangle, farther than `least`, beyond its edges too; or
+/// `several`.
+std::uint8_t only_face(const std::array<Vec3d, 3>& seen, double least) {
+    const int axis = dominant_axis(seen[0]);
+    const bool is_negative = seen[0][axis] < 0;
+    const bool is_alone = std::all_of(seen.begin(), seen.end(), [&](const Vec3d& p) {
+        const double z = is_negative ? -p[axis] : p[axis];
+        return z > least && std::abs(p[(axis + 1) % 3]) * edge < z &&
+               std::abs(p[(axis + 2) % 3]) * edge < z;
+    });
+    return is_alone ? static_cast<std::uint8_t>(2 * axis + (is_negative ? 1 : 0))
+                    : Surroundings::several;
+}
+
+/// Whether the triangle's box meets the cube around the apex.
+bool meets_cube(const std::array<Vec3d, 3>& seen, double half) {
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto [low, high] = std::minmax({seen[0][axis], seen[1][axis], seen[2][axis]});
+        if (!(low <= half && high >= -half)) return false;
+    }
+    return true;
+}
+
 } // namespace
 
 std::vector<RawPiece>
@@ -75,10 +101,11 @@ parallel_pieces(const Records& records, Vec3 direction, const Executor& executor
     const double slope_u = d[axis_u] / d[axis];
     const double slope_v = d[axis_v] / d[axis];
     const double sign = d[axis] > 0 ? 1 : -1;
-    return collect(records, executor, [&](PrimId id, std::vector<RawPiece>& pieces) {
+    return collect(records, executor, [&](std::size_t index, std::vector<RawPiece>& pieces) {
+        const PrimId id = records.ids()[index];
         RawPiece piece{};
         for (std::size_t i = 0; i < 3; ++i) {
-            const Vec3d p = vertex(records, id, i);
+            const Vec3d p = records.vertex(id, i);
             piece.u[i] = p[axis_u] - p[axis] * slope_u;
             piece.v[i] = p[axis_v] - p[axis] * slope_v;
             piece.key[i] = static_cast<float>(p[axis] * sign);
@@ -88,29 +115,53 @@ parallel_pieces(const Records& records, Vec3 direction, const Executor& executor
     });
 }
 
+Surroundings look_around(const Records& records, const Vec3d& apex, const Executor& executor) {
+    const std::vector<PrimId>& ids = records.ids();
+    Surroundings around{apex};
+    around.reach =
+        ids.empty() ? std::numeric_limits<double>::infinity() : 4 * records.farthest_from(apex);
+    around.nearest = std::max(around.reach * near_share, 0x1p-140);
+    around.faces.resize(ids.size());
+    std::vector<std::vector<PrimId>> near((ids.size() + chunk - 1) / chunk);
+    const double half = around.nearest * (1 + 0x1p-3);
+    executor.for_each_chunk(ids.size(), chunk, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::array<Vec3d, 3> seen{
+                records.vertex(ids[i], 0) - apex,
+                records.vertex(ids[i], 1) - apex,
+                records.vertex(ids[i], 2) - apex
+            };
+            around.faces[i] = only_face(seen, half);
+            if (around.faces[i] == Surroundings::several && meets_cube(seen, half))
+                near[begin / chunk].push_back(ids[i]);
+        }
+    });
+    for (const auto& part : near)
+        around.near.insert(around.near.end(), part.begin(), part.end());
+    return around;
+}
+
 std::vector<RawPiece> radial_pieces(
     const Records& records,
-    Vec3 apex,
-    int axis,
-    int sign,
-    double nearest,
-    double reach,
-    std::span<const PrimId> near,
+    const Surroundings& around,
+    std::size_t face,
     const Executor& executor
 ) {
+    const int axis = static_cast<int>(face / 2);
+    const double sign = face % 2 == 0 ? 1 : -1;
     const int axis_u = (axis + 1) % 3;
     const int axis_v = (axis + 2) % 3;
-    const Vec3d eye = to_double(apex);
-    // Rays of a face may stray beyond its edges.
-    constexpr double edge = 1 + 0x1p-4;
-    return collect(records, executor, [&](PrimId id, std::vector<RawPiece>& pieces) {
+    const double nearest = around.nearest;
+    return collect(records, executor, [&](std::size_t index, std::vector<RawPiece>& pieces) {
+        if (around.faces[index] != face && around.faces[index] != Surroundings::several) return;
+        const PrimId id = records.ids()[index];
         Polygon polygon;
         bool is_outside = true;
         bool is_inside = true;
         bool goes_on = false;
         std::array<bool, 4> beyond{true, true, true, true};
         for (std::size_t i = 0; i < 3; ++i) {
-            const Vec3d p = vertex(records, id, i) - eye;
+            const Vec3d p = records.vertex(id, i) - around.apex;
             const Vec3d q{p[axis_u], p[axis_v], p[axis] * sign};
             const double limit = q.z * edge;
             polygon.add(q);
@@ -132,7 +183,8 @@ std::vector<RawPiece> radial_pieces(
             cut(polygon, {0, 1, edge}, 0);
         }
         if (polygon.count < 3) return;
-        const bool is_near = goes_on && std::binary_search(near.begin(), near.end(), id);
+        const bool is_near =
+            goes_on && std::binary_search(around.near.begin(), around.near.end(), id);
         double least = polygon.corners[0].z;
         for (std::size_t i = 1; i < polygon.count; ++i)
             least = std::min(least, polygon.corners[i].z);
@@ -147,7 +199,7 @@ std::vector<RawPiece> radial_pieces(
                 piece.v[k] = q.y * inverse;
                 piece.key[k] = static_cast<float>(-inverse);
             }
-            piece.margin = static_cast<float>(stray_share * reach / least);
+            piece.margin = static_cast<float>(stray_share * around.reach / least);
             piece.prim = id;
             piece.is_part = polygon.count > 3;
             piece.is_near = is_near;

@@ -3,26 +3,16 @@
 
 #include "pencil/grid_data.hpp"
 #include "pencil/piece.hpp"
+#include "pencil/records.hpp"
 
 #include <raywise/core/executor.hpp>
 #include <raywise/pencil/pencil.hpp>
 
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 namespace raywise::pencil_detail {
-
-/// World vertices of a triangle, coordinate by coordinate: x of v0, v1, v2, then y, then z.
-inline constexpr std::size_t record_floats = 9;
-
-/// The triangles as the build reads them, and their range.
-struct Records {
-    const float* values;         ///< record_floats each
-    std::span<const PrimId> ids; ///< of those that are finite
-    double greatest;             ///< magnitude of a coordinate
-};
 
 /// A face before its units are chosen: corners in scene units across (parallel) or slopes (radial).
 struct RawPiece {
@@ -35,17 +25,27 @@ struct RawPiece {
     bool is_near; ///< whether the triangle goes on near the apex, where no piece is
 };
 
-/// The pieces of the cube face on the side `sign` of `axis`, beyond `nearest` from the apex; rays
-/// come from at most `reach` away; `near` are the triangles that may be met before. In order of
-/// ids, as `near` is.
+/// What a radial pencil has around its apex.
+struct Surroundings {
+    static constexpr std::uint8_t several = 6;
+
+    Vec3d apex;
+    double reach = 0;           ///< rays come from at most so far away
+    double nearest = 0;         ///< where pieces begin
+    std::vector<PrimId> near{}; ///< triangles that rays may meet before, ascending
+    std::vector<std::uint8_t> faces{
+    }; ///< that alone see the triangles of Records::ids, or `several`
+};
+
+[[nodiscard]] Surroundings
+look_around(const Records& records, const Vec3d& apex, const Executor& executor);
+
+/// The pieces of one of the six cube faces: 2 * axis, and one more for its negative side. In order
+/// of ids.
 [[nodiscard]] std::vector<RawPiece> radial_pieces(
     const Records& records,
-    Vec3 apex,
-    int axis,
-    int sign,
-    double nearest,
-    double reach,
-    std::span<const PrimId> near,
+    const Surroundings& around,
+    std::size_t face,
     const Executor& executor
 );
 
