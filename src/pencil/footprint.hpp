@@ -24,7 +24,8 @@ struct Footprint {
     double least_key, greatest_key;
 };
 
-/// Bounds may be wider than need be for pieces smaller than the window.
+/// Those of the piece's bounds, where they are in the window: wider than need be where its edges
+/// cut the window's corners.
 [[nodiscard]] Footprint footprint(const Piece& piece, const Window& window);
 
 /// Whether every ray of the window meets the inside of the piece.
