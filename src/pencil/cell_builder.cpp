@@ -100,9 +100,7 @@ void CellBuilder::add_reference(
 ) {
     const Piece& piece = pieces_[index];
     const auto is_hidden = [&](std::int32_t least) { return (least >> cover_shift) > cover; };
-    const auto nearest_key =
-        static_cast<double>(std::min({piece.key[0], piece.key[1], piece.key[2]}));
-    if (is_hidden(least_depth(nearest_key))) {
+    if (cover != never && is_hidden(least_depth(static_cast<double>(Range(piece.key).least)))) {
         ++statistics_.culled;
         return;
     }

@@ -34,7 +34,7 @@ DepthPlane plane_of(double at, double u, double v, double error, double largest)
 }
 
 double greatest(const Vec3d& v) {
-    return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+    return std::max(std::max(std::abs(v.x), std::abs(v.y)), std::abs(v.z));
 }
 
 /// With the barycentric weights e / area: depth = d0 + ((d1 - d0) e20 + (d2 - d0) e01) / area.
@@ -80,7 +80,7 @@ Lines parallel_lines(
         };
         x[i] = place(0) - (window.first_u + half);
         y[i] = place(1) - (window.first_v + half);
-        size = std::max({size, std::abs(x[i]), std::abs(y[i])});
+        size = std::max(size, std::max(std::abs(x[i]), std::abs(y[i])));
     }
     // Of a place, and of an edge's direction times what it is multiplied with, twice.
     const double error = 32 * (off + 0x1p-50 * size) * size;
@@ -171,7 +171,10 @@ int put(const Line& line, double place_error, std::int16_t* row) {
     constexpr double most = 16383;
     const double steep = std::max(std::abs(line.u), std::abs(line.v));
     const double change = std::abs(line.u) + std::abs(line.v);
-    const double factor = std::min(most / steep, 5 / (change * place_error + line.error));
+    // The smaller one of most / steep and 5 / error, by one division.
+    const double error = change * place_error + line.error;
+    const bool is_steep = most * error <= 5 * steep;
+    const double factor = (is_steep ? most : 5) / (is_steep ? steep : error);
     if (!(factor < 0x1p200)) {
         row[edge_u] = row[edge_v] = row[edge_at] = 0;
         return 0;

@@ -71,32 +71,32 @@ std::optional<KeyPlane> key_plane(const Piece& piece) {
 }
 
 bool fills(const Piece& piece, const Window& window) {
-    const auto [low_u, high_u] = std::minmax({piece.u[0], piece.u[1], piece.u[2]});
-    const auto [low_v, high_v] = std::minmax({piece.v[0], piece.v[1], piece.v[2]});
+    const Range u(piece.u);
+    const Range v(piece.v);
     const Bounds wide = widened(window, piece.margin);
-    return low_u < wide.least_u && high_u > wide.greatest_u && low_v < wide.least_v &&
-           high_v > wide.greatest_v && is_inside(piece, wide);
+    return u.least < wide.least_u && u.greatest > wide.greatest_u && v.least < wide.least_v &&
+           v.greatest > wide.greatest_v && is_inside(piece, wide);
 }
 
 Footprint footprint(const Piece& piece, const Window& window) {
     const std::int32_t m = piece.margin;
-    const auto [low_u, high_u] = std::minmax({piece.u[0], piece.u[1], piece.u[2]});
-    const auto [low_v, high_v] = std::minmax({piece.v[0], piece.v[1], piece.v[2]});
+    const Range u(piece.u);
+    const Range v(piece.v);
+    const Range key(piece.key);
     const std::int32_t last_u = window.first_u + window.side - 1;
     const std::int32_t last_v = window.first_v + window.side - 1;
-    if (low_u - m > last_u || high_u + m < window.first_u || low_v - m > last_v ||
-        high_v + m < window.first_v)
+    if (u.least - m > last_u || u.greatest + m < window.first_u || v.least - m > last_v ||
+        v.greatest + m < window.first_v)
         return nothing;
-    const auto [least_key, greatest_key] = std::minmax({piece.key[0], piece.key[1], piece.key[2]});
     Footprint place{
-        std::max(low_u - m, window.first_u),
-        std::min(high_u + m, last_u),
-        std::max(low_v - m, window.first_v),
-        std::min(high_v + m, last_v),
-        static_cast<double>(least_key),
-        static_cast<double>(greatest_key)
+        std::max(u.least - m, window.first_u),
+        std::min(u.greatest + m, last_u),
+        std::max(v.least - m, window.first_v),
+        std::min(v.greatest + m, last_v),
+        static_cast<double>(key.least),
+        static_cast<double>(key.greatest)
     };
-    if (high_u - low_u <= window.side && high_v - low_v <= window.side) return place;
+    if (u.greatest - u.least <= window.side && v.greatest - v.least <= window.side) return place;
     if (const auto plane = key_plane(piece)) {
         const double half_u = 0.5 * (place.greatest_u + 1 - place.least_u);
         const double half_v = 0.5 * (place.greatest_v + 1 - place.least_v);

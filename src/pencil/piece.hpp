@@ -18,6 +18,16 @@ inline constexpr double key_rounding = 0x1p-22;
 /// the ray's origin by a factor of (1 - t) after the share t of its way: times t / (1 - t).
 inline constexpr double stray_share = 0x1p-22;
 
+/// Of three numbers. Called for every reference, where the loop of std::minmax is felt.
+template <class T>
+struct Range {
+    explicit Range(const std::array<T, 3>& x)
+        : least(std::min(std::min(x[0], x[1]), x[2]))
+        , greatest(std::max(std::max(x[0], x[1]), x[2])) {}
+
+    T least, greatest;
+};
+
 /// A triangle, or a part of one that was cut by the bounds of a cube face. A ray of the pencil that
 /// meets the part passes, in units, within `margin - 1` of the place where a query says it is; each
 /// corner is within 1 of its place along u and v.
@@ -30,13 +40,13 @@ struct Piece {
     bool is_part; ///< whether other pieces have the same triangle
     bool is_near; ///< whether a ray that meets the triangle near the apex may miss all its pieces
 
-    [[nodiscard]] std::int32_t least_u() const { return std::min({u[0], u[1], u[2]}) - margin; }
+    [[nodiscard]] std::int32_t least_u() const { return Range(u).least - margin; }
 
-    [[nodiscard]] std::int32_t greatest_u() const { return std::max({u[0], u[1], u[2]}) + margin; }
+    [[nodiscard]] std::int32_t greatest_u() const { return Range(u).greatest + margin; }
 
-    [[nodiscard]] std::int32_t least_v() const { return std::min({v[0], v[1], v[2]}) - margin; }
+    [[nodiscard]] std::int32_t least_v() const { return Range(v).least - margin; }
 
-    [[nodiscard]] std::int32_t greatest_v() const { return std::max({v[0], v[1], v[2]}) + margin; }
+    [[nodiscard]] std::int32_t greatest_v() const { return Range(v).greatest + margin; }
 };
 
 } // namespace raywise::pencil_detail
