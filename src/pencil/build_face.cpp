@@ -104,8 +104,7 @@ double scale(
     map.front = is_radial ? -1 / least_key : least_key;
     // t / (1 - t) for the share t of a ray.
     const double strays = stray_share * std::max(map.scale_u, map.scale_v);
-    map.most_t =
-        is_radial ? static_cast<float>(0.25 / (strays + 0.25)) : std::numeric_limits<float>::max();
+    map.most_t = is_radial ? 0.25 / (strays + 0.25) : std::numeric_limits<double>::infinity();
     set_lanes(map, is_radial);
     const double greatest = is_radial ? 2 : 4 * map.reach;
     return 0x1p-49 * greatest * std::max(map.scale_u, map.scale_v);

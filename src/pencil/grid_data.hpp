@@ -126,7 +126,7 @@ struct FaceMap {
     int axis = 0, axis_u = 1, axis_v = 2;
     float shear_u = 0, shear_v = 0; ///< parallel: direction u / z and v / z
     float speed = 0;                ///< parallel: |direction z|
-    float most_t = 0;  ///< rays toward an apex that begin later may stray from their place by more
+    double most_t = 0; ///< rays toward an apex that begin later may stray from their place by more
                        ///< than a quarter unit before they begin
     float whole_t = 1; ///< a ray toward the emitter with such a t_max passes all geometry
     double depth_slack = 1; ///< units that a rounded t may be off, beside a share of it

@@ -80,25 +80,97 @@ HWY_INLINE void locate_parallel(const Grid& grid, std::size_t count, Together& r
     }
 }
 
-/// `locate` of the first rays, shadow rays that pass all geometry.
-HWY_INLINE void locate_shadows(const Grid& grid, std::size_t count, float t_max, Together& rays) {
-    const auto segment = [&](std::size_t i, const Vec3& origin)
-                             HWY_ATTR { return Segment{origin, origin, rays.t[i], t_max}; };
-    const bool is_parallel = grid.pencil.kind() == Pencil::Kind::parallel;
-    if (is_parallel) locate_parallel(grid, count, rays);
-    for (std::size_t i = 0; i < count; ++i) {
-        const Vec3 origin{rays.x[i], rays.y[i], rays.z[i]};
-        if (!is_parallel) {
-            Spot spot{};
-            rays.where[i] = locate<Heading::to_emitter>(grid, segment(i, origin), spot);
-            rays.faces[i] = spot.face;
-            for (std::size_t k = 0; k < 4; ++k)
-                rays.units[k][i] = spot.units[k];
-        } else if (rays.where[i] != Where::inside) [[unlikely]] {
-            rays.where[i] =
-                where_else<Heading::to_emitter>(grid, segment(i, origin), grid.faces[0].map);
+/// `locate` of the first rays, shadow rays of a radial pencil: each of a vector has a face of its
+/// own.
+HWY_INLINE void locate_radial(const Grid& grid, std::size_t count, Together& rays) {
+    const hn::CappedTag<double, together> d;
+    const hn::Rebind<float, decltype(d)> floats;
+    const hn::Rebind<std::int32_t, decltype(d)> integers;
+    const hn::RebindToSigned<decltype(d)> indices;
+    constexpr auto stride = static_cast<double>(sizeof(Face) / sizeof(double));
+    const auto zero = hn::Zero(d);
+    const auto one = hn::Set(d, 1.0);
+    for (std::size_t first = 0; first < count; first += hn::Lanes(d)) {
+        const auto load = [&](const std::array<float, together>& row)
+                              HWY_ATTR { return hn::PromoteTo(d, hn::Load(floats, &row[first])); };
+        const auto x = hn::Sub(load(rays.x), hn::Set(d, grid.apex.x));
+        const auto y = hn::Sub(load(rays.y), hn::Set(d, grid.apex.y));
+        const auto z = hn::Sub(load(rays.z), hn::Set(d, grid.apex.z));
+        const auto t = load(rays.t);
+        // As face_of does.
+        const auto across = hn::Max(hn::Abs(x), hn::Abs(y));
+        const auto distance = hn::Max(across, hn::Abs(z));
+        const auto is_z = hn::Gt(hn::Abs(z), across);
+        const auto is_x = hn::Ge(hn::Abs(x), distance);
+        const auto along = [&](auto of_x, auto of_y, auto of_z) HWY_ATTR {
+            return hn::IfThenElse(is_x, of_x, hn::IfThenElse(is_z, of_z, of_y));
+        };
+        const auto is_negative = hn::Lt(along(x, y, z), zero);
+        const auto face = hn::Add(
+            along(zero, hn::Set(d, 2.0), hn::Set(d, 4.0)), hn::IfThenElseZero(is_negative, one)
+        );
+        const auto at = hn::ConvertTo(indices, hn::Mul(face, hn::Set(d, stride)));
+        const FaceMap& map = grid.faces[0].map;
+        const auto of_face = [&](const double& member)
+                                 HWY_ATTR { return hn::GatherIndex(d, &member, at); };
+        const auto inverse = hn::Div(one, distance);
+        const auto u = hn::MulSub(
+            hn::Mul(along(y, z, x), inverse), of_face(map.scale_u), of_face(map.offset_u)
+        );
+        const auto v = hn::MulSub(
+            hn::Mul(along(z, x, y), inverse), of_face(map.scale_v), of_face(map.offset_v)
+        );
+        const auto is_within = [&](auto place, auto size) HWY_ATTR {
+            return hn::And(hn::Ge(place, zero), hn::Lt(place, size));
+        };
+        const auto is_inside = hn::And(
+            hn::And(is_within(u, of_face(map.size_u)), is_within(v, of_face(map.size_v))),
+            hn::Le(distance, hn::Set(d, map.reach))
+        );
+        const auto length = hn::Mul(t, distance);
+        const auto scale = of_face(map.depth_scale);
+        const auto depth = [&](std::size_t lane) HWY_ATTR {
+            const auto left = hn::MulAdd(hn::Set(d, map.toward[lane]), length, distance);
+            const auto end = hn::Div(scale, hn::Max(left, hn::Set(d, least_distance[lane])));
+            return hn::Max(
+                hn::Min(hn::Sub(of_face(map.columns[3][lane]), end), hn::Set(d, deepest)), zero
+            );
+        };
+        const auto is_sure = hn::Le(t, of_face(map.most_t));
+        const auto put = [&](std::size_t lane, auto value) HWY_ATTR {
+            hn::Store(hn::DemoteTo(integers, value), integers, &rays.units[lane][first]);
+        };
+        put(0, u);
+        put(1, v);
+        put(2, hn::IfThenElse(is_sure, depth(2), hn::Set(d, deepest)));
+        put(3,
+            hn::IfThenElse(
+                is_sure, hn::Sub(depth(3), hn::Set(d, rounding)), hn::Set(d, nothing_sure)
+            ));
+        alignas(64) std::array<double, together> faces, inside; // NOLINT(*-member-init)
+        hn::Store(face, d, faces.data());
+        hn::Store(hn::IfThenElseZero(is_inside, one), d, inside.data());
+        for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {
+            const std::size_t i = first + lane;
+            rays.faces[i] = &grid.faces[static_cast<std::size_t>(faces[lane])];
+            rays.where[i] = inside[lane] == 1 ? Where::inside : Where::unknown;
         }
     }
+}
+
+/// `locate` of the first rays, shadow rays that pass all geometry.
+HWY_INLINE void locate_shadows(const Grid& grid, std::size_t count, float t_max, Together& rays) {
+    if (grid.pencil.kind() == Pencil::Kind::parallel)
+        locate_parallel(grid, count, rays);
+    else
+        locate_radial(grid, count, rays);
+    for (std::size_t i = 0; i < count; ++i)
+        if (rays.where[i] != Where::inside) [[unlikely]] {
+            const Vec3 origin{rays.x[i], rays.y[i], rays.z[i]};
+            rays.where[i] = where_else<Heading::to_emitter>(
+                grid, {origin, origin, rays.t[i], t_max}, rays.faces[i]->map
+            );
+        }
 }
 
 /// `locate` of the first rays, which come from the apex, as far as they see the first one's face;
