@@ -7,7 +7,7 @@
 
 namespace raywise {
 
-/// At least `bytes` bytes on a cache line; from 4 MiB on, on the boundaries of large pages that the
+/// At least `bytes` bytes on a cache line; from 1 MiB on, on the boundaries of large pages that the
 /// system is asked for: fewer page faults and address translations. Throws std::bad_alloc. Release
 /// with free_large.
 [[nodiscard]] void* allocate_large(std::size_t bytes);
