@@ -121,6 +121,14 @@ bool AreaHandle::any_hit(const Ray& ray) const {
     return verdict == Verdict::unknown ? any_hit_by_trees(ray) : verdict == Verdict::hit;
 }
 
+bool AreaHandle::occluded(const Vec3& point, float t_min, PrimId surface) const {
+    if (grid_ != nullptr) {
+        const Verdict verdict = grid_->occluded(point, t_min, surface);
+        if (verdict != Verdict::unknown) return verdict == Verdict::hit;
+    }
+    return any_hit_by_trees(pencil().shadow_ray(point, t_min, surface));
+}
+
 bool AreaHandle::any_hit_by_trees(const Ray& ray) const {
     if (const WideBvh* whole = whole_tree()) return raywise::any_hit(*whole, ray);
     if (!is_valid(ray)) return false;

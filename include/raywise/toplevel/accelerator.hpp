@@ -283,6 +283,10 @@ public:
     template <QueryObserver Observer>
     [[nodiscard]] bool any_hit(const Ray& ray, Observer& seen) const;
 
+    /// any_hit(pencil().shadow_ray(point, t_min, surface)): the fastest way to ask for one point.
+    /// Throws Error for an area that is not exact.
+    [[nodiscard]] bool occluded(const Vec3& point, float t_min = 0, PrimId surface = no_prim) const;
+
     /// See Accelerator::closest_hits. Fastest when the pencil holds every ray: a grid then answers
     /// several at a time, and an inversion a large batch at once.
     void closest_hits(

@@ -173,10 +173,9 @@ TEST(Structures, InvalidRaysOfAGridMiss) {
 
 TEST(Structures, ASurfaceDoesNotShadeThePointsOnIt) {
     const Scene scene = generate_courtyard({.triangles = 20'000});
-    const InfluenceArea sun = InfluenceArea::parallel(
-        "sun", {.direction = {0.3, -0.8, 0.5}, .region = obb_around(bounds(scene))}
-    );
-    const Accelerator accelerator = build_accelerator(scene, {sun});
+    const Obb everywhere = obb_around(bounds(scene));
+    const InfluenceArea sun =
+        InfluenceArea::parallel("sun", {.direction = {0.3, -0.8, 0.5}, .region = everywhere});
     std::vector<Vec3> points;
     std::vector<PrimId> surfaces;
     for (std::size_t i = 0; i < scene.triangles.size(); i += 7) {
@@ -184,12 +183,20 @@ TEST(Structures, ASurfaceDoesNotShadeThePointsOnIt) {
         points.push_back((triangle.v0 + triangle.v1 + triangle.v2) * (1.0F / 3));
         surfaces.push_back(to_prim(i));
     }
-    const auto shadowed = std::make_unique<bool[]>(points.size());
-    accelerator["sun"].occluded(points, surfaces, {shadowed.get(), points.size()});
     const BinaryTree plain = plain_tree(scene);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        const Ray ray = accelerator["sun"].pencil().shadow_ray(points[i], 0, surfaces[i]);
-        ASSERT_EQ(shadowed[i], closest_hit(plain.tree, plain.triangles, ray).has_value()) << i;
+    for (const StructureKind kind : {StructureKind::pencil_grid, StructureKind::none}) {
+        AcceleratorParams params;
+        params.use.structure = kind;
+        const Accelerator accelerator = build_accelerator(scene, {sun}, params);
+        const AreaHandle handle = accelerator["sun"];
+        const auto shadowed = std::make_unique<bool[]>(points.size());
+        handle.occluded(points, surfaces, {shadowed.get(), points.size()});
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const Ray ray = handle.pencil().shadow_ray(points[i], 0, surfaces[i]);
+            const bool wanted = closest_hit(plain.tree, plain.triangles, ray).has_value();
+            ASSERT_EQ(shadowed[i], wanted) << i;
+            ASSERT_EQ(handle.occluded(points[i], 0, surfaces[i]), wanted) << i;
+        }
     }
 }
 
