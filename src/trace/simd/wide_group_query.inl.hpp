@@ -1,0 +1,282 @@
+// What groups of rays do with blocks of triangles, and batches by groups.
+#if defined(RAYWISE_TRACE_SIMD_WIDE_GROUP_QUERY) ==                                                \
+    defined(HWY_TARGET_TOGGLE) // once per instruction set
+#ifdef RAYWISE_TRACE_SIMD_WIDE_GROUP_QUERY
+#undef RAYWISE_TRACE_SIMD_WIDE_GROUP_QUERY
+#else
+#define RAYWISE_TRACE_SIMD_WIDE_GROUP_QUERY
+#endif
+
+#include "trace/simd/wide_block.inl.hpp"
+#include "trace/simd/wide_group.inl.hpp"
+#include "trace/simd/wide_group_traverse.inl.hpp"
+#include "trace/simd/wide_settle.inl.hpp"
+
+#include <raywise/bvh/wide_bvh.hpp>
+#include <raywise/core/ids.hpp>
+#include <raywise/geometry/ray.hpp>
+#include <raywise/trace/wide.hpp>
+
+#include <hwy/highway.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+
+#if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3
+
+HWY_BEFORE_NAMESPACE();
+
+namespace raywise::simd {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// The rays of a group and one triangle of a block.
+HWY_INLINE Encounter<Many> encounter(
+    const RayGroup& group,
+    const TriangleBlock& block,
+    std::size_t lane,
+    RayMask rays,
+    RayLanes t_max
+) {
+    const Many d;
+    const auto sheared = [&](std::size_t vertex) HWY_ATTR {
+        const auto seen = [&](std::size_t i) HWY_ATTR {
+            const float coordinate = block.vertices[vertex][group.axes[i]][lane];
+            return hn::Sub(hn::Set(d, coordinate), group.origin[i].load());
+        };
+        const RayLanes z = seen(2);
+        return ShearedVertex<Many>{
+            hn::NegMulAdd(group.shear[0].load(), z, seen(0)),
+            hn::NegMulAdd(group.shear[1].load(), z, seen(1)),
+            z
+        };
+    };
+    const hn::RebindToUnsigned<Many> du;
+    const auto prim = hn::Set(du, static_cast<std::uint32_t>(block.prims[lane]));
+    const auto is_other = hn::Ne(hn::BitCast(du, group.excluded.load()), prim);
+    return {
+        sheared(0),
+        sheared(1),
+        sheared(2),
+        hn::Set(d, block.doubled_extents[lane]),
+        group.shear[2].load(),
+        group.t_min.load(),
+        t_max,
+        hn::And(rays, hn::RebindMask(d, is_other))
+    };
+}
+
+/// `reach` of every lane.
+HWY_INLINE RayLanes reach_lanes(RayLanes t) {
+    const Many d;
+    return hn::MulAdd(t, hn::Set(d, 1 + 16 * unit_roundoff), hn::Set(d, 0x1p-120F));
+}
+
+/// The nearest sure hits of a group, as Nearest has it of one ray.
+template <TraceMode mode>
+class GroupNearest {
+public:
+    HWY_INLINE explicit GroupNearest(const RayGroup& group) : group_(group) {
+        const Many d;
+        limit_.store(group.t_max.load());
+        reach_.store(reach_lanes(group.t_max.load()));
+        low_.store(hn::Set(d, std::numeric_limits<float>::infinity()));
+        prims_.store(hn::BitCast(d, hn::Set(Ids(), static_cast<std::uint32_t>(no_prim))));
+        blocks_.fill(nullptr);
+        measure_farthest();
+    }
+
+    [[nodiscard]] HWY_INLINE RayLanes reach() const { return reach_.load(); }
+
+    [[nodiscard]] HWY_INLINE float farthest() const { return farthest_; }
+
+    HWY_INLINE void open(const TriangleBlock& block, RayMask rays) {
+        for (std::size_t lane = 0; lane < TriangleBlock::width; ++lane) {
+            if (block.prims[lane] == no_prim) break;
+            Meeting<Many> found;
+            if (meet<mode>(Many(), encounter(group_, block, lane, rays, limit_.load()), found))
+                take(block, lane, found);
+        }
+    }
+
+    /// Fills `hit`, or does not when there is none; false when only exact arithmetic can tell.
+    HWY_INLINE bool settle_into(const Ray& ray, std::size_t i, std::optional<Hit>& hit) const {
+        if ((open_ >> i & 1U) != 0) return false;
+        if (blocks_[i] == nullptr) return true;
+        const TriangleBlock& block = *blocks_[i];
+        if constexpr (mode == TraceMode::fast) {
+            const auto [v0, v1, v2] = block.triangle(lanes_[i]);
+            const bool front = dot(cross(v1 - v0, v2 - v0), ray.direction) < 0;
+            hit.emplace(
+                Hit{limit_.items[i], u_.items[i], v_.items[i], block.prims[lanes_[i]], front}
+            );
+            return true;
+        } else {
+            return settle(ray, block, lanes_[i], most_t_.items[i], group_.largest.items[i], hit);
+        }
+    }
+
+private:
+    using Ids = hn::RebindToUnsigned<Many>;
+
+    /// Takes the triangle where it is surely nearer than all before.
+    HWY_INLINE void take(const TriangleBlock& block, std::size_t lane, const Meeting<Many>& found) {
+        const Many d;
+        const auto prim = hn::Set(Ids(), static_cast<std::uint32_t>(block.prims[lane]));
+        const auto taken_prims = hn::BitCast(Ids(), prims_.load());
+        RayMask is_taken;
+        if constexpr (mode == TraceMode::fast) {
+            const RayLanes t = hn::Add(found.low, hn::Zero(d));
+            const auto is_before = hn::RebindMask(d, hn::Lt(prim, taken_prims));
+            is_taken = hn::And(
+                found.possible,
+                hn::Or(hn::Lt(t, limit_.load()), hn::And(hn::Eq(t, limit_.load()), is_before))
+            );
+            u_.store(hn::IfThenElse(is_taken, found.u, u_.load()));
+            v_.store(hn::IfThenElse(is_taken, found.v, v_.load()));
+        } else {
+            is_taken = hn::And(found.sure, hn::Lt(found.high, low_.load()));
+            // Often the same triangle, of another leaf.
+            const auto is_same = hn::RebindMask(d, hn::Eq(prim, taken_prims));
+            const auto is_open = hn::AndNot(hn::Or(is_taken, is_same), found.possible);
+            open_ |= bits_of(d, is_open);
+            low_.store(hn::IfThenElse(is_taken, found.low, low_.load()));
+            most_t_.store(hn::IfThenElse(is_taken, found.high, most_t_.load()));
+        }
+        std::uint32_t taken = bits_of(d, is_taken);
+        if (taken == 0) return;
+        limit_.store(hn::IfThenElse(is_taken, found.high, limit_.load()));
+        reach_.store(reach_lanes(limit_.load()));
+        prims_.store(hn::IfThenElse(is_taken, hn::BitCast(d, prim), prims_.load()));
+        for (; taken != 0; taken &= taken - 1) {
+            const auto i = static_cast<std::size_t>(std::countr_zero(taken));
+            blocks_[i] = &block;
+            lanes_[i] = static_cast<std::uint8_t>(lane);
+        }
+        measure_farthest();
+    }
+
+    HWY_INLINE void measure_farthest() {
+        farthest_ = hn::GetLane(hn::MaxOfLanes(Many(), reach_.load()));
+    }
+
+    const RayGroup& group_;
+    PerRay limit_, reach_, low_, most_t_;
+    PerRay u_, v_; // of the fast mode
+    PerRay prims_; // as bits
+    std::array<const TriangleBlock*, group_size> blocks_;
+    std::array<std::uint8_t, group_size> lanes_;
+    std::uint32_t open_ = 0; // rays that met what the filter does not decide
+    float farthest_ = 0;
+};
+
+/// Which rays of a group are surely hit, and which may be.
+template <TraceMode mode>
+class GroupAny {
+public:
+    HWY_INLINE explicit GroupAny(const RayGroup& group) : group_(group) {
+        reach_.store(reach_lanes(group.t_max.load()));
+        measure_farthest();
+    }
+
+    [[nodiscard]] HWY_INLINE RayLanes reach() const { return reach_.load(); }
+
+    [[nodiscard]] HWY_INLINE float farthest() const { return farthest_; }
+
+    HWY_INLINE void open(const TriangleBlock& block, RayMask rays) {
+        const Many d;
+        RayMask left = rays;
+        for (std::size_t lane = 0; lane < TriangleBlock::width; ++lane) {
+            if (block.prims[lane] == no_prim) break;
+            Meeting<Many> found;
+            if (!meet<mode>(d, encounter(group_, block, lane, left, group_.t_max.load()), found))
+                continue;
+            hit_ |= bits_of(d, found.sure);
+            open_ |= bits_of(d, found.possible);
+            left = hn::AndNot(found.sure, left);
+            reach_.store(hn::IfThenElse(found.sure, hn::Set(d, -1.0F), reach_.load()));
+        }
+        measure_farthest();
+    }
+
+    [[nodiscard]] HWY_INLINE bool is_hit(std::size_t i) const { return (hit_ >> i & 1U) != 0; }
+
+    /// Whether only exact arithmetic can tell.
+    [[nodiscard]] HWY_INLINE bool is_open(std::size_t i) const {
+        return !is_hit(i) && (open_ >> i & 1U) != 0;
+    }
+
+private:
+    HWY_INLINE void measure_farthest() {
+        farthest_ = hn::GetLane(hn::MaxOfLanes(Many(), reach_.load()));
+    }
+
+    const RayGroup& group_;
+    PerRay reach_;
+    std::uint32_t hit_ = 0;
+    std::uint32_t open_ = 0;
+    float farthest_ = 0;
+};
+
+/// `single(tree, ray, hit)` answers one ray. False when the rays do not go together.
+template <TraceMode mode, class Single>
+HWY_NOINLINE bool
+closest_of_group(const WideBvh& tree, const Ray* rays, Hit* hits, const Single& single) {
+    RayGroup group; // NOLINT(*-member-init): prepare_group fills it
+    if (!prepare_group(rays, tree, group)) return false;
+    GroupNearest<mode> query(group);
+    if (!traverse_group<true>(tree, group, query)) return false;
+    for (std::size_t i = 0; i < group_size; ++i) {
+        std::optional<Hit> hit;
+        if (!query.settle_into(rays[i], i, hit)) single(rays[i], hit);
+        hits[i] = hit ? *hit : Hit{};
+    }
+    return true;
+}
+
+template <TraceMode mode, class Single>
+HWY_NOINLINE bool
+any_of_group(const WideBvh& tree, const Ray* rays, bool* occluded, const Single& single) {
+    RayGroup group; // NOLINT(*-member-init): prepare_group fills it
+    if (!prepare_group(rays, tree, group)) return false;
+    GroupAny<mode> query(group);
+    if (!traverse_group<false>(tree, group, query)) return false;
+    for (std::size_t i = 0; i < group_size; ++i)
+        occluded[i] = query.is_open(i) ? single(rays[i]) : query.is_hit(i);
+    return true;
+}
+
+/// Calls `group(first)` for rays that stand together and, where it returns false, `single(i)` for
+/// each of them. Where groups fail, fewer are tried.
+template <class Group, class Single>
+HWY_INLINE void by_groups(std::size_t count, const Group& group, const Single& single) {
+    constexpr std::size_t most_skipped = 8;
+    std::size_t skipped = 0, to_skip = 0, first = 0;
+    for (; first + group_size <= count; first += group_size) {
+        if (to_skip > 0) {
+            --to_skip;
+        } else if (group(first)) {
+            skipped = 0;
+            continue;
+        } else {
+            skipped = to_skip = skipped < most_skipped ? 2 * skipped + 1 : most_skipped;
+        }
+        for (std::size_t i = first; i < first + group_size; ++i)
+            single(i);
+    }
+    for (; first < count; ++first)
+        single(first);
+}
+
+} // namespace HWY_NAMESPACE
+} // namespace raywise::simd
+
+HWY_AFTER_NAMESPACE();
+
+#endif
+
+#endif
