@@ -94,12 +94,27 @@ bool Accelerator::any_hit(const Ray& ray) const {
     return any_hit(ray, nobody);
 }
 
+const WideBvh* Accelerator::tree_of(std::span<const Ray> rays) const {
+    const WideBvh* everything = global_tree_.wide();
+    const auto is_its = [&](const Ray& ray) { return is_of_no_area(ray); };
+    return everything != nullptr && std::all_of(rays.begin(), rays.end(), is_its) ? everything
+                                                                                  : nullptr;
+}
+
 void Accelerator::closest_hits(
     std::span<const Ray> rays,
     std::span<Hit> hits,
     const Executor& executor
 ) const {
-    detail::closest_batch(*this, rays, hits, executor);
+    detail::check_answers(rays.size(), hits.size());
+    const auto answer = [&](const Ray& ray) { return closest_hit(ray).value_or(Hit{}); };
+    const auto work = [&](std::span<const Ray> part, std::span<Hit> answers) {
+        if (const WideBvh* tree = tree_of(part))
+            raywise::closest_hits(*tree, part, answers);
+        else
+            std::transform(part.begin(), part.end(), answers.begin(), answer);
+    };
+    detail::for_each_part(rays, hits, executor, work);
 }
 
 void Accelerator::any_hits(
@@ -107,7 +122,15 @@ void Accelerator::any_hits(
     std::span<bool> occluded,
     const Executor& executor
 ) const {
-    detail::any_batch(*this, rays, occluded, executor);
+    detail::check_answers(rays.size(), occluded.size());
+    const auto answer = [&](const Ray& ray) { return any_hit(ray); };
+    const auto work = [&](std::span<const Ray> part, std::span<bool> answers) {
+        if (const WideBvh* tree = tree_of(part))
+            raywise::any_hits(*tree, part, answers);
+        else
+            std::transform(part.begin(), part.end(), answers.begin(), answer);
+    };
+    detail::for_each_part(rays, occluded, executor, work);
 }
 
 AreaHandle Accelerator::operator[](std::string_view name) const {

@@ -54,21 +54,6 @@ void occluded_by_blocks(
     }
 }
 
-/// Calls `work(rays, answers)` for parts of a batch that stay in the cache between a look at their
-/// rays and the tracing of them.
-template <class Answer, class Work>
-void for_each_part(
-    std::span<const Ray> rays,
-    std::span<Answer> answers,
-    const Executor& executor,
-    const Work& work
-) {
-    executor
-        .for_each_chunk(rays.size(), detail::batch_chunk, [&](std::size_t begin, std::size_t end) {
-            work(rays.subspan(begin, end - begin), answers.subspan(begin, end - begin));
-        });
-}
-
 } // namespace
 
 const LocalStructure& AreaHandle::structure() const {
@@ -160,12 +145,16 @@ void AreaHandle::closest_hits(
     if (is_worth_drawing(rays.size()) && are_exact(rays, executor))
         return closest_hits_once(own.triangles->view(), *own.pencil, rays, hits, executor);
     const auto answer = [&](const Ray& ray) { return closest_hit(ray).value_or(Hit{}); };
-    for_each_part(rays, hits, executor, [&](std::span<const Ray> part, std::span<Hit> answers) {
-        if (is_gridded(part))
+    const WideBvh* whole = grid_ == nullptr ? whole_tree() : nullptr;
+    const auto work = [&](std::span<const Ray> part, std::span<Hit> answers) {
+        if (whole != nullptr)
+            raywise::closest_hits(*whole, part, answers);
+        else if (is_gridded(part))
             grid_->closest_hits(part, answers, answer);
         else
             std::transform(part.begin(), part.end(), answers.begin(), answer);
-    });
+    };
+    detail::for_each_part(rays, hits, executor, work);
 }
 
 void AreaHandle::any_hits(
@@ -178,17 +167,16 @@ void AreaHandle::any_hits(
     if (is_worth_drawing(rays.size()) && are_exact(rays, executor))
         return any_hits_once(own.triangles->view(), *own.pencil, rays, occluded, executor);
     const auto answer = [&](const Ray& ray) { return any_hit(ray); };
-    for_each_part(
-        rays,
-        occluded,
-        executor,
-        [&](std::span<const Ray> part, std::span<bool> answers) {
-            if (is_gridded(part))
-                grid_->any_hits(part, answers, answer);
-            else
-                std::transform(part.begin(), part.end(), answers.begin(), answer);
-        }
-    );
+    const WideBvh* whole = grid_ == nullptr ? whole_tree() : nullptr;
+    const auto work = [&](std::span<const Ray> part, std::span<bool> answers) {
+        if (whole != nullptr)
+            raywise::any_hits(*whole, part, answers);
+        else if (is_gridded(part))
+            grid_->any_hits(part, answers, answer);
+        else
+            std::transform(part.begin(), part.end(), answers.begin(), answer);
+    };
+    detail::for_each_part(rays, occluded, executor, work);
 }
 
 void AreaHandle::occluded(

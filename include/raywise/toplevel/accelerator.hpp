@@ -211,6 +211,9 @@ private:
         return true;
     }
 
+    /// The tree over everything where it alone answers all of the rays, else null.
+    [[nodiscard]] const WideBvh* tree_of(std::span<const Ray> rays) const;
+
     /// The areas to ask for a valid ray, best first.
     [[nodiscard]] Candidates candidates_of(const Ray& ray) const;
 

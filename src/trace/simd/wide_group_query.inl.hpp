@@ -9,8 +9,8 @@
 
 #include "trace/simd/wide_block.inl.hpp"
 #include "trace/simd/wide_group.inl.hpp"
+#include "trace/simd/wide_group_settle.inl.hpp"
 #include "trace/simd/wide_group_traverse.inl.hpp"
-#include "trace/simd/wide_settle.inl.hpp"
 
 #include <raywise/bvh/wide_bvh.hpp>
 #include <raywise/core/ids.hpp>
@@ -19,11 +19,12 @@
 
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <optional>
 
 #if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3
 
@@ -86,7 +87,10 @@ public:
         reach_.store(reach_lanes(group.t_max.load()));
         low_.store(hn::Set(d, std::numeric_limits<float>::infinity()));
         prims_.store(hn::BitCast(d, hn::Set(Ids(), static_cast<std::uint32_t>(no_prim))));
-        blocks_.fill(nullptr);
+        if constexpr (mode == TraceMode::fast) {
+            u_.store(hn::Zero(d));
+            v_.store(hn::Zero(d));
+        }
         measure_farthest();
     }
 
@@ -103,21 +107,27 @@ public:
         }
     }
 
-    /// Fills `hit`, or does not when there is none; false when only exact arithmetic can tell.
-    HWY_INLINE bool settle_into(const Ray& ray, std::size_t i, std::optional<Hit>& hit) const {
-        if ((open_ >> i & 1U) != 0) return false;
-        if (blocks_[i] == nullptr) return true;
-        const TriangleBlock& block = *blocks_[i];
-        if constexpr (mode == TraceMode::fast) {
-            const auto [v0, v1, v2] = block.triangle(lanes_[i]);
-            const bool front = dot(cross(v1 - v0, v2 - v0), ray.direction) < 0;
-            hit.emplace(
-                Hit{limit_.items[i], u_.items[i], v_.items[i], block.prims[lanes_[i]], front}
-            );
-            return true;
-        } else {
-            return settle(ray, block, lanes_[i], most_t_.items[i], group_.largest.items[i], hit);
+    /// Writes the answers of the group's rays; returns the bits of those that only exact arithmetic
+    /// can tell.
+    HWY_INLINE std::uint32_t answer(const Ray* rays, Hit* hits) const {
+        std::fill_n(hits, group_size, Hit{});
+        if (taken_ == 0) return open_;
+        GroupHits found;
+        if constexpr (mode == TraceMode::fast)
+            found = {limit_, u_, v_, fronts(rays), taken_};
+        else
+            settle_group(questions(rays), found);
+        for (std::uint32_t left = taken_; left != 0; left &= left - 1) {
+            const auto i = static_cast<std::size_t>(std::countr_zero(left));
+            hits[i] = {
+                found.t.items[i],
+                found.u.items[i],
+                found.v.items[i],
+                blocks_[i]->prims[lanes_[i]],
+                (found.is_front >> i & 1U) != 0
+            };
         }
+        return open_ | (taken_ & ~found.is_settled);
     }
 
 private:
@@ -145,10 +155,10 @@ private:
             const auto is_open = hn::AndNot(hn::Or(is_taken, is_same), found.possible);
             open_ |= bits_of(d, is_open);
             low_.store(hn::IfThenElse(is_taken, found.low, low_.load()));
-            most_t_.store(hn::IfThenElse(is_taken, found.high, most_t_.load()));
         }
         std::uint32_t taken = bits_of(d, is_taken);
         if (taken == 0) return;
+        taken_ |= taken;
         limit_.store(hn::IfThenElse(is_taken, found.high, limit_.load()));
         reach_.store(reach_lanes(limit_.load()));
         prims_.store(hn::IfThenElse(is_taken, hn::BitCast(d, prim), prims_.load()));
@@ -160,17 +170,50 @@ private:
         measure_farthest();
     }
 
+    /// Where a ray hit nothing, of a triangle without area.
+    HWY_INLINE GroupQuestions questions(const Ray* rays) const {
+        GroupQuestions asked{};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const std::size_t offset = axis * sizeof(float);
+            asked.origin[axis].store(gathered(rays, offsetof(Ray, origin) + offset));
+            asked.direction[axis].store(gathered(rays, offsetof(Ray, direction) + offset));
+        }
+        for (std::uint32_t left = taken_; left != 0; left &= left - 1) {
+            const auto i = static_cast<std::size_t>(std::countr_zero(left));
+            const TriangleBlock& block = *blocks_[i];
+            for (std::size_t vertex = 0; vertex < 3; ++vertex)
+                for (std::size_t axis = 0; axis < 3; ++axis)
+                    asked.vertices[vertex][axis].items[i] = block.vertices[vertex][axis][lanes_[i]];
+            asked.doubled_extent.items[i] = block.doubled_extents[lanes_[i]];
+        }
+        asked.most_t = limit_;
+        asked.largest = group_.largest;
+        return asked;
+    }
+
+    /// Bits: the ray sees the triangle's front, by float arithmetic.
+    HWY_INLINE std::uint32_t fronts(const Ray* rays) const {
+        std::uint32_t bits = 0;
+        for (std::uint32_t left = taken_; left != 0; left &= left - 1) {
+            const auto i = static_cast<std::size_t>(std::countr_zero(left));
+            const auto [v0, v1, v2] = blocks_[i]->triangle(lanes_[i]);
+            if (dot(cross(v1 - v0, v2 - v0), rays[i].direction) < 0) bits |= 1U << i;
+        }
+        return bits;
+    }
+
     HWY_INLINE void measure_farthest() {
         farthest_ = hn::GetLane(hn::MaxOfLanes(Many(), reach_.load()));
     }
 
     const RayGroup& group_;
-    PerRay limit_, reach_, low_, most_t_;
-    PerRay u_, v_; // of the fast mode
-    PerRay prims_; // as bits
+    PerRay limit_, reach_, low_; // t of what is taken is at least low and at most limit
+    PerRay u_, v_;               // of the fast mode
+    PerRay prims_;               // as bits
     std::array<const TriangleBlock*, group_size> blocks_;
     std::array<std::uint8_t, group_size> lanes_;
-    std::uint32_t open_ = 0; // rays that met what the filter does not decide
+    std::uint32_t taken_ = 0; // rays that a block and a lane are known of
+    std::uint32_t open_ = 0;  // rays that met what the filter does not decide
     float farthest_ = 0;
 };
 
@@ -222,7 +265,7 @@ private:
     float farthest_ = 0;
 };
 
-/// `single(tree, ray, hit)` answers one ray. False when the rays do not go together.
+/// `single(ray)` answers one ray. False when the rays do not go together.
 template <TraceMode mode, class Single>
 HWY_NOINLINE bool
 closest_of_group(const WideBvh& tree, const Ray* rays, Hit* hits, const Single& single) {
@@ -230,10 +273,10 @@ closest_of_group(const WideBvh& tree, const Ray* rays, Hit* hits, const Single& 
     if (!prepare_group(rays, tree, group)) return false;
     GroupNearest<mode> query(group);
     if (!traverse_group<true>(tree, group, query)) return false;
-    for (std::size_t i = 0; i < group_size; ++i) {
-        std::optional<Hit> hit;
-        if (!query.settle_into(rays[i], i, hit)) single(rays[i], hit);
-        hits[i] = hit ? *hit : Hit{};
+    std::uint32_t open = query.answer(rays, hits);
+    for (; open != 0; open &= open - 1) {
+        const auto i = static_cast<std::size_t>(std::countr_zero(open));
+        hits[i] = single(rays[i]);
     }
     return true;
 }

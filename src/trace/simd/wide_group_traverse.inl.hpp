@@ -1,4 +1,4 @@
-// Which leaves a group of rays opens together. After [Wald07b], [Benthin11].
+// Which leaves a group of rays opens together. After [Reshetov05], [Overbeck08].
 #if defined(RAYWISE_TRACE_SIMD_WIDE_GROUP_TRAVERSE) ==                                             \
     defined(HWY_TARGET_TOGGLE) // once per instruction set
 #ifdef RAYWISE_TRACE_SIMD_WIDE_GROUP_TRAVERSE
@@ -110,7 +110,7 @@ HWY_INLINE bool traverse_group(const WideBvh& tree, const RayGroup& group, Query
     GroupStack stack; // NOLINT(*-member-init): written before read
     std::size_t height =
         push_slots<ordered>(group, nodes[0], WideRef::node(0), query.farthest(), stack, 0);
-    while (height > 0) {
+    while (height > 0 && query.farthest() >= 0) {
         const std::uint32_t waiting = stack[--height];
         const std::size_t slot = waiting & 7U;
         const WideNode& parent = node_at(waiting & ~7U);

@@ -331,13 +331,13 @@ bool any_counted(const WideBvh& tree, const Ray& ray, Counts& counts) {
 
 template <TraceMode mode>
 void closest_batch(const WideBvh& tree, const Ray* rays, Hit* hits, std::size_t count) {
-    const auto single = [&](const Ray& ray, std::optional<Hit>& hit) {
-        hit = closest_silent<mode>(tree, ray);
+    const auto single = [&](const Ray& ray) {
+        return closest_silent<mode>(tree, ray).value_or(Hit{});
     };
     by_groups(
         count,
         [&](std::size_t i) { return closest_of_group<mode>(tree, rays + i, hits + i, single); },
-        [&](std::size_t i) { hits[i] = closest_silent<mode>(tree, rays[i]).value_or(Hit{}); }
+        [&](std::size_t i) { hits[i] = single(rays[i]); }
     );
 }
 
