@@ -93,22 +93,25 @@ HWY_INLINE RayLanes gathered(const Ray* rays, std::size_t offset) {
     return hn::GatherIndex(d, floats_at(rays, offset), places);
 }
 
-/// The bounds of what the map makes of planes within `size`, the largest of coordinates and
-/// origins. With c the first ray's origin, p * s + h = (p - c) * s + (c * s + h): the first is on
-/// one of two lines through 0, the second in an interval. The roundings on the way, of numbers up
-/// to 4 S |s|, add up to less than 12 e S |s|.
-template <bool is_lower>
-HWY_INLINE GroupBound bound_of(const GroupMap& map, float c, float size) {
+/// The bounds of what the maps of one axis make of planes within `size`, the largest of coordinates
+/// and origins. With c some origin, p * s + h = (p - c) * s + (c * s + h): the first is on one of
+/// two lines through 0, the second in an interval. The roundings on the way, of numbers up to
+/// 4 S |s|, add up to less than 12 e S |s|.
+HWY_INLINE void bound_planes(std::size_t axis, float c, float size, RayGroup& out) {
     const Many d;
-    const RayLanes scale = map.scale.load();
+    const RayLanes scale = out.near[axis].scale.load();
     const float s0 = hn::GetLane(hn::MinOfLanes(d, scale));
     const float s1 = hn::GetLane(hn::MaxOfLanes(d, scale));
-    const RayLanes at_c = hn::MulAdd(scale, hn::Set(d, c), map.shift.load());
+    const float least = hn::GetLane(hn::MinOfLanes(d, out.near[axis].at(c)));
+    const float most = hn::GetLane(hn::MaxOfLanes(d, out.far[axis].at(c)));
+    // The far scales, rounded as they are from the near ones, have their extremes where those do.
+    constexpr float farther = 1 + 16 * unit_roundoff;
+    const float f0 = s0 * farther, f1 = s1 * farther;
     const float slack =
-        16 * unit_roundoff * size * std::max(std::abs(s0), std::abs(s1)) + 0x1p-100F;
-    const float most = is_lower ? hn::GetLane(hn::MinOfLanes(d, at_c)) - slack
-                                : hn::GetLane(hn::MaxOfLanes(d, at_c)) + slack;
-    return {s0, most - c * s0, s1, most - c * s1};
+        16 * unit_roundoff * size * std::max(std::abs(f0), std::abs(f1)) + 0x1p-100F;
+    const float low = least - slack, high = most + slack;
+    out.near_bound[axis] = {s0, low - c * s0, s1, low - c * s1};
+    out.far_bound[axis] = {f0, high - c * f0, f1, high - c * f1};
 }
 
 /// The part of one axis for boxes, as map_planes does it for one ray.
@@ -128,9 +131,7 @@ HWY_INLINE void map_group_planes(
     out.near[axis].shift.store(hn::Neg(hn::MulAdd(origin, inverse, outward)));
     out.far[axis].scale.store(far_inverse);
     out.far[axis].shift.store(hn::NegMulAdd(origin, far_inverse, outward));
-    const float c = hn::GetLane(origin);
-    out.near_bound[axis] = bound_of<true>(out.near[axis], c, size);
-    out.far_bound[axis] = bound_of<false>(out.far[axis], c, size);
+    bound_planes(axis, hn::GetLane(origin), size, out);
     constexpr std::size_t row = sizeof(WideNode::planes) / 6;
     const bool rises = hn::GetLane(direction) > 0;
     out.near_offset[axis] = 2 * axis * row + (rises ? 0 : row);
