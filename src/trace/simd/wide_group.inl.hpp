@@ -35,6 +35,7 @@ using Many = hn::CappedTag<float, 16>;
 using RayLanes = hn::Vec<Many>;
 using RayMask = hn::Mask<Many>;
 constexpr std::size_t group_size = hn::MaxLanes(Many());
+constexpr std::uint32_t all_of_group = (1U << group_size) - 1; ///< a bit for each
 
 /// One number of every ray.
 struct alignas(64) PerRay {

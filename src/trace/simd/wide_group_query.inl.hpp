@@ -71,6 +71,14 @@ HWY_INLINE Encounter<Many> encounter(
     };
 }
 
+/// The rays whose bits are set.
+HWY_INLINE RayMask mask_of(std::uint32_t bits) {
+    const std::array<std::uint8_t, 8> bytes{
+        static_cast<std::uint8_t>(bits), static_cast<std::uint8_t>(bits >> 8U)
+    };
+    return hn::LoadMaskBits(Many(), bytes.data());
+}
+
 /// `reach` of every lane.
 HWY_INLINE RayLanes reach_lanes(RayLanes t) {
     const Many d;
@@ -107,17 +115,24 @@ public:
         }
     }
 
-    /// Writes the answers of the group's rays; returns the bits of those that only exact arithmetic
-    /// can tell.
+    HWY_INLINE void leave(std::uint32_t bits) {
+        const Many d;
+        open_ |= bits;
+        reach_.store(hn::IfThenElse(mask_of(bits), hn::Set(d, -1.0F), reach_.load()));
+        measure_farthest();
+    }
+
+    /// Writes the answers; returns the bits of the rays that have none yet.
     HWY_INLINE std::uint32_t answer(const Ray* rays, Hit* hits) const {
         std::fill_n(hits, group_size, Hit{});
-        if (taken_ == 0) return open_;
+        const std::uint32_t known = taken_ & ~open_;
+        if (known == 0) return open_;
         GroupHits found;
         if constexpr (mode == TraceMode::fast)
-            found = {limit_, u_, v_, fronts(rays), taken_};
+            found = {limit_, u_, v_, fronts(rays), known};
         else
             settle_group(questions(rays), found);
-        for (std::uint32_t left = taken_; left != 0; left &= left - 1) {
+        for (std::uint32_t left = known; left != 0; left &= left - 1) {
             const auto i = static_cast<std::size_t>(std::countr_zero(left));
             hits[i] = {
                 found.t.items[i],
@@ -127,7 +142,7 @@ public:
                 (found.is_front >> i & 1U) != 0
             };
         }
-        return open_ | (taken_ & ~found.is_settled);
+        return open_ | (known & ~found.is_settled);
     }
 
 private:
@@ -160,7 +175,7 @@ private:
         if (taken == 0) return;
         taken_ |= taken;
         limit_.store(hn::IfThenElse(is_taken, found.high, limit_.load()));
-        reach_.store(reach_lanes(limit_.load()));
+        reach_.store(hn::IfThenElse(is_taken, reach_lanes(found.high), reach_.load()));
         prims_.store(hn::IfThenElse(is_taken, hn::BitCast(d, prim), prims_.load()));
         for (; taken != 0; taken &= taken - 1) {
             const auto i = static_cast<std::size_t>(std::countr_zero(taken));
@@ -213,7 +228,7 @@ private:
     std::array<const TriangleBlock*, group_size> blocks_;
     std::array<std::uint8_t, group_size> lanes_;
     std::uint32_t taken_ = 0; // rays that a block and a lane are known of
-    std::uint32_t open_ = 0;  // rays that met what the filter does not decide
+    std::uint32_t open_ = 0;  // rays that met what the filter does not decide, or that left
     float farthest_ = 0;
 };
 
@@ -246,11 +261,18 @@ public:
         measure_farthest();
     }
 
-    [[nodiscard]] HWY_INLINE bool is_hit(std::size_t i) const { return (hit_ >> i & 1U) != 0; }
+    HWY_INLINE void leave(std::uint32_t bits) {
+        const Many d;
+        open_ |= bits;
+        reach_.store(hn::IfThenElse(mask_of(bits), hn::Set(d, -1.0F), reach_.load()));
+        measure_farthest();
+    }
 
-    /// Whether only exact arithmetic can tell.
-    [[nodiscard]] HWY_INLINE bool is_open(std::size_t i) const {
-        return !is_hit(i) && (open_ >> i & 1U) != 0;
+    /// Writes the answers; returns the bits of the rays that have none yet.
+    HWY_INLINE std::uint32_t answer(bool* occluded) const {
+        for (std::size_t i = 0; i < group_size; ++i)
+            occluded[i] = (hit_ >> i & 1U) != 0;
+        return open_ & ~hit_;
     }
 
 private:
@@ -265,51 +287,45 @@ private:
     float farthest_ = 0;
 };
 
-/// `single(ray)` answers one ray. False when the rays do not go together.
-template <TraceMode mode, class Single>
-HWY_NOINLINE bool
-closest_of_group(const WideBvh& tree, const Ray* rays, Hit* hits, const Single& single) {
+/// Answers the next group_size rays as far as they go together; returns the bits of the others.
+template <TraceMode mode>
+HWY_NOINLINE std::uint32_t closest_of_group(const WideBvh& tree, const Ray* rays, Hit* hits) {
     RayGroup group; // NOLINT(*-member-init): prepare_group fills it
-    if (!prepare_group(rays, tree, group)) return false;
+    if (!prepare_group(rays, tree, group)) return all_of_group;
     GroupNearest<mode> query(group);
-    if (!traverse_group<true>(tree, group, query)) return false;
-    std::uint32_t open = query.answer(rays, hits);
-    for (; open != 0; open &= open - 1) {
-        const auto i = static_cast<std::size_t>(std::countr_zero(open));
-        hits[i] = single(rays[i]);
-    }
-    return true;
+    traverse_group<true>(tree, group, query);
+    return query.answer(rays, hits);
 }
 
-template <TraceMode mode, class Single>
-HWY_NOINLINE bool
-any_of_group(const WideBvh& tree, const Ray* rays, bool* occluded, const Single& single) {
+template <TraceMode mode>
+HWY_NOINLINE std::uint32_t any_of_group(const WideBvh& tree, const Ray* rays, bool* occluded) {
     RayGroup group; // NOLINT(*-member-init): prepare_group fills it
-    if (!prepare_group(rays, tree, group)) return false;
+    if (!prepare_group(rays, tree, group)) return all_of_group;
     GroupAny<mode> query(group);
-    if (!traverse_group<false>(tree, group, query)) return false;
-    for (std::size_t i = 0; i < group_size; ++i)
-        occluded[i] = query.is_open(i) ? single(rays[i]) : query.is_hit(i);
-    return true;
+    traverse_group<false>(tree, group, query);
+    return query.answer(occluded);
 }
 
-/// Calls `group(first)` for rays that stand together and, where it returns false, `single(i)` for
-/// each of them. Where groups fail, fewer are tried.
+/// `group(first)` answers rays that stand together and returns the bits of those that it does not,
+/// for `single(i)` to answer. Where most are left, fewer groups are tried.
 template <class Group, class Single>
 HWY_INLINE void by_groups(std::size_t count, const Group& group, const Single& single) {
     constexpr std::size_t most_skipped = 8;
+    constexpr int most_left = static_cast<int>(group_size) / 2;
     std::size_t skipped = 0, to_skip = 0, first = 0;
     for (; first + group_size <= count; first += group_size) {
+        std::uint32_t left = all_of_group;
         if (to_skip > 0) {
             --to_skip;
-        } else if (group(first)) {
-            skipped = 0;
-            continue;
         } else {
-            skipped = to_skip = skipped < most_skipped ? 2 * skipped + 1 : most_skipped;
+            left = group(first);
+            if (std::popcount(left) <= most_left)
+                skipped = 0;
+            else
+                skipped = to_skip = std::min(2 * skipped + 1, most_skipped);
         }
-        for (std::size_t i = first; i < first + group_size; ++i)
-            single(i);
+        for (; left != 0; left &= left - 1)
+            single(first + static_cast<std::size_t>(std::countr_zero(left)));
     }
     for (; first < count; ++first)
         single(first);

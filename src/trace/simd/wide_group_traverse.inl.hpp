@@ -91,12 +91,35 @@ HWY_INLINE std::size_t push_slots(
     return height + static_cast<std::size_t>(std::popcount(bits_of(d, is_met_key)));
 }
 
-/// Opens leaves for the rays of the group that meet them; false when the rays have so little in
-/// common that each had better go alone, whatever `query` has found by then.
+/// How often each ray of a group may meet a box that hardly any other meets: who goes elsewhere had
+/// better go alone at once.
+class Patience {
+public:
+    HWY_INLINE Patience() { left_.fill(most); }
+
+    /// Bits of the rays that lose it on the way to a box that only `rays` meet.
+    HWY_INLINE std::uint32_t lost_by(std::uint32_t rays) {
+        if (std::popcount(rays) > few) return 0;
+        std::uint32_t lost = 0;
+        for (; rays != 0; rays &= rays - 1)
+            if (--left_[static_cast<std::size_t>(std::countr_zero(rays))] == 0)
+                lost |= rays & (0U - rays);
+        return lost;
+    }
+
+private:
+    static constexpr int few = 2;
+    static constexpr std::int8_t most = 3;
+
+    std::array<std::int8_t, group_size> left_;
+};
+
+/// Opens leaves for the rays of the group that meet them, as long as those have much in common.
 /// `query.reach()`: of each ray, below 0 for those that are done; `query.farthest()`: the greatest;
-/// `query.open(block, rays)`: for each block of a leaf.
+/// `query.open(block, rays)`: for each block of a leaf; `query.leave(bits)`: rays that are to go
+/// alone, whatever was found for them.
 template <bool ordered, class Query>
-HWY_INLINE bool traverse_group(const WideBvh& tree, const RayGroup& group, Query& query) {
+HWY_INLINE void traverse_group(const WideBvh& tree, const RayGroup& group, Query& query) {
     const Many d;
     const WideNode* const nodes = tree.nodes.data();
     const auto node_at = [&](std::uint32_t words) HWY_ATTR -> const WideNode& {
@@ -107,6 +130,7 @@ HWY_INLINE bool traverse_group(const WideBvh& tree, const RayGroup& group, Query
     // A step of a group costs about as much as one of this many rays alone.
     constexpr int rays_per_step = 3;
     int credit = 24 * rays_per_step;
+    Patience patience;
     GroupStack stack; // NOLINT(*-member-init): written before read
     std::size_t height =
         push_slots<ordered>(group, nodes[0], WideRef::node(0), query.farthest(), stack, 0);
@@ -115,9 +139,14 @@ HWY_INLINE bool traverse_group(const WideBvh& tree, const RayGroup& group, Query
         const std::size_t slot = waiting & 7U;
         const WideNode& parent = node_at(waiting & ~7U);
         const RayMask rays = meet_slot(group, parent, slot, query.reach());
-        credit += std::popcount(bits_of(d, rays)) - rays_per_step;
-        if (hn::AllFalse(d, rays)) continue;
-        if (credit < 0) return false;
+        const std::uint32_t bits = bits_of(d, rays);
+        credit += std::popcount(bits) - rays_per_step;
+        if (credit < 0) return query.leave(all_of_group);
+        if (bits == 0) continue;
+        if (const std::uint32_t lost = patience.lost_by(bits); lost != 0) {
+            query.leave(lost);
+            if (lost == bits) continue;
+        }
         const WideRef child = parent.children[slot];
         if (!child.is_leaf()) {
             height = push_slots<ordered>(
@@ -133,7 +162,6 @@ HWY_INLINE bool traverse_group(const WideBvh& tree, const RayGroup& group, Query
             if (block->is_last != 0) break;
         }
     }
-    return true;
 }
 
 } // namespace HWY_NAMESPACE

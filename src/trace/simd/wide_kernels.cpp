@@ -331,23 +331,19 @@ bool any_counted(const WideBvh& tree, const Ray& ray, Counts& counts) {
 
 template <TraceMode mode>
 void closest_batch(const WideBvh& tree, const Ray* rays, Hit* hits, std::size_t count) {
-    const auto single = [&](const Ray& ray) {
-        return closest_silent<mode>(tree, ray).value_or(Hit{});
-    };
     by_groups(
         count,
-        [&](std::size_t i) { return closest_of_group<mode>(tree, rays + i, hits + i, single); },
-        [&](std::size_t i) { hits[i] = single(rays[i]); }
+        [&](std::size_t i) { return closest_of_group<mode>(tree, rays + i, hits + i); },
+        [&](std::size_t i) { hits[i] = closest_silent<mode>(tree, rays[i]).value_or(Hit{}); }
     );
 }
 
 template <TraceMode mode>
 void any_batch(const WideBvh& tree, const Ray* rays, bool* occluded, std::size_t count) {
-    const auto single = [&](const Ray& ray) { return any_silent<mode>(tree, ray); };
     by_groups(
         count,
-        [&](std::size_t i) { return any_of_group<mode>(tree, rays + i, occluded + i, single); },
-        [&](std::size_t i) { occluded[i] = single(rays[i]); }
+        [&](std::size_t i) { return any_of_group<mode>(tree, rays + i, occluded + i); },
+        [&](std::size_t i) { occluded[i] = any_silent<mode>(tree, rays[i]); }
     );
 }
 
