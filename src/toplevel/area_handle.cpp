@@ -66,6 +66,10 @@ const WideBvh* AreaHandle::whole_tree() const {
     return own.has_tree ? nullptr : owner_->global_tree().wide();
 }
 
+TraceMode AreaHandle::trace_mode() const {
+    return owner_->params().trace_mode;
+}
+
 const InfluenceArea& AreaHandle::area() const {
     return owner_->areas()[static_cast<std::size_t>(id_)];
 }
@@ -94,7 +98,7 @@ std::optional<Hit> AreaHandle::closest_hit(const Ray& ray) const {
 }
 
 std::optional<Hit> AreaHandle::closest_hit_by_trees(const Ray& ray) const {
-    if (const WideBvh* whole = whole_tree()) return raywise::closest_hit(*whole, ray);
+    if (const WideBvh* whole = whole_tree()) return raywise::closest_hit(*whole, ray, trace_mode());
     SilentQuery nobody;
     return closest_hit(ray, nobody);
 }
@@ -104,7 +108,7 @@ bool AreaHandle::any_hit(const Ray& ray) const {
         const Verdict verdict = grid_->any_hit(ray);
         if (verdict != Verdict::unknown) return verdict == Verdict::hit;
     }
-    if (const WideBvh* whole = whole_tree()) return raywise::any_hit(*whole, ray);
+    if (const WideBvh* whole = whole_tree()) return raywise::any_hit(*whole, ray, trace_mode());
     SilentQuery nobody;
     return any_hit(ray, nobody);
 }
@@ -148,7 +152,7 @@ void AreaHandle::closest_hits(
     const WideBvh* whole = grid_ == nullptr ? whole_tree() : nullptr;
     const auto work = [&](std::span<const Ray> part, std::span<Hit> answers) {
         if (whole != nullptr)
-            raywise::closest_hits(*whole, part, answers);
+            raywise::closest_hits(*whole, part, answers, serial_executor(), trace_mode());
         else if (is_gridded(part))
             grid_->closest_hits(part, answers, answer);
         else
@@ -170,7 +174,7 @@ void AreaHandle::any_hits(
     const WideBvh* whole = grid_ == nullptr ? whole_tree() : nullptr;
     const auto work = [&](std::span<const Ray> part, std::span<bool> answers) {
         if (whole != nullptr)
-            raywise::any_hits(*whole, part, answers);
+            raywise::any_hits(*whole, part, answers, serial_executor(), trace_mode());
         else if (is_gridded(part))
             grid_->any_hits(part, answers, answer);
         else
