@@ -44,8 +44,8 @@ bool is_near_hit(const Ray& ray, const Triangle& triangle, float t) {
 /// Whether the exact answer could not change by a little.
 bool is_clear(const std::optional<Hit>& hit, const Ray& ray) {
     if (!hit) return false;
-    const double u = hit->u, v = hit->v;
     const auto t = static_cast<double>(hit->t);
+    const auto u = static_cast<double>(hit->u), v = static_cast<double>(hit->v);
     const bool is_inside = std::min({u, v, 1 - u - v}) > tolerance;
     return is_inside && t * (1 - tolerance) > static_cast<double>(ray.t_min) + tolerance &&
            t * (1 + tolerance) < static_cast<double>(ray.t_max) - tolerance;
