@@ -48,6 +48,8 @@ void all_hits(
 );
 
 /// closest_hit of every ray, in parallel; a miss is `Hit{}`. Throws Error when the sizes differ.
+/// Fastest where rays side by side run the same way from and to places close together, as those of
+/// a camera do in tiles.
 void closest_hits(
     const WideBvh& tree,
     std::span<const Ray> rays,
@@ -56,7 +58,7 @@ void closest_hits(
     TraceMode mode = TraceMode::watertight
 );
 
-/// any_hit of every ray, in parallel. Throws Error when the sizes differ.
+/// any_hit of every ray, in parallel. Throws Error when the sizes differ. See closest_hits.
 void any_hits(
     const WideBvh& tree,
     std::span<const Ray> rays,
