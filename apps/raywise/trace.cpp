@@ -31,6 +31,7 @@ struct TraceOptions {
     std::uint64_t sample = 0; ///< rays per area, instead of a file
     std::uint64_t verify = 0; ///< rays checked by brute force
     bool any = false;
+    bool fast = false;
 };
 
 // Bytes per triangle of a tree with its copy of the triangles, and per ray with its answer.
@@ -182,6 +183,10 @@ void trace(const TraceOptions& options, const Session& session) {
             options.sample == 0 ? "rays are needed: --rays FILE or --sample N"
                                 : "rays come from --rays or --sample, not both"
         );
+    if (options.fast && !options.tree_file.empty())
+        throw UsageError("--fast is for what raywise builds itself: it goes without --tree");
+    if (options.fast && options.verify > 0)
+        throw UsageError("--verify asks for exact answers: it goes without --fast");
     const Scene scene = open_scene(options.source, session);
     const std::vector<InfluenceArea> areas = open_areas(options.areas_file, scene, session);
     const std::vector<Ray> rays =
@@ -195,9 +200,12 @@ void trace(const TraceOptions& options, const Session& session) {
     if (!options.save_rays_file.empty())
         session.put_files([&] { save_rays(options.save_rays_file, rays); });
 
+    AcceleratorParams params;
+    if (options.fast) params.trace_mode = TraceMode::fast;
     const Tracer tracer =
         options.tree_file.empty()
-            ? Tracer(build_accelerator(scene, areas, {}, session.executor(), session.progress()))
+            ? Tracer(build_accelerator(scene, areas, params, session.executor(), session.progress())
+              )
             : Tracer(open_tree(options.tree_file, scene));
     const Outcome outcome = options.any ? trace_any(options, tracer, scene, rays, session)
                                         : trace_closest(options, tracer, scene, rays, session);
@@ -232,6 +240,11 @@ Command add_trace(CLI::App& root, CommonOptions& options) {
     app->add_option("--verify", own->verify, "Check this many of the answers by brute force")
         ->capture_default_str();
     app->add_flag("--any", own->any, "Ask only whether there is a hit; -o is then a .npy of bool");
+    app->add_flag(
+        "--fast",
+        own->fast,
+        "Decide hits by floats alone: rays that graze edges may be answered wrongly"
+    );
     add_common_options(*app, options, "Write the hits to this file (.npz)");
     return {app, {}, [own](const Session& session) { trace(*own, session); }};
 }

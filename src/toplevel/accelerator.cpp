@@ -82,16 +82,25 @@ Accelerator::Candidates Accelerator::candidates_in(AreaId area, const Ray& ray) 
 std::optional<Hit> Accelerator::closest_hit(const Ray& ray) const {
     // Most rays of most scenes: nothing stands between them and the tree, not even a copy.
     const WideBvh* everything = global_tree_.wide();
-    if (everything != nullptr && is_of_no_area(ray)) return raywise::closest_hit(*everything, ray);
+    if (everything != nullptr && is_of_no_area(ray))
+        return raywise::closest_hit(*everything, ray, params_.trace_mode);
     SilentQuery nobody;
     return closest_hit(ray, nobody);
 }
 
 bool Accelerator::any_hit(const Ray& ray) const {
     const WideBvh* everything = global_tree_.wide();
-    if (everything != nullptr && is_of_no_area(ray)) return raywise::any_hit(*everything, ray);
+    if (everything != nullptr && is_of_no_area(ray))
+        return raywise::any_hit(*everything, ray, params_.trace_mode);
     SilentQuery nobody;
     return any_hit(ray, nobody);
+}
+
+const WideBvh* Accelerator::tree_of(std::span<const Ray> rays) const {
+    const WideBvh* everything = global_tree_.wide();
+    const auto is_its = [&](const Ray& ray) { return is_of_no_area(ray); };
+    return everything != nullptr && std::all_of(rays.begin(), rays.end(), is_its) ? everything
+                                                                                  : nullptr;
 }
 
 void Accelerator::closest_hits(
@@ -99,7 +108,15 @@ void Accelerator::closest_hits(
     std::span<Hit> hits,
     const Executor& executor
 ) const {
-    detail::closest_batch(*this, rays, hits, executor);
+    detail::check_answers(rays.size(), hits.size());
+    const auto answer = [&](const Ray& ray) { return closest_hit(ray).value_or(Hit{}); };
+    const auto work = [&](std::span<const Ray> part, std::span<Hit> answers) {
+        if (const WideBvh* tree = tree_of(part))
+            raywise::closest_hits(*tree, part, answers, serial_executor(), params_.trace_mode);
+        else
+            std::transform(part.begin(), part.end(), answers.begin(), answer);
+    };
+    detail::for_each_part(rays, hits, executor, work);
 }
 
 void Accelerator::any_hits(
@@ -107,7 +124,21 @@ void Accelerator::any_hits(
     std::span<bool> occluded,
     const Executor& executor
 ) const {
-    detail::any_batch(*this, rays, occluded, executor);
+    detail::check_answers(rays.size(), occluded.size());
+    const auto answer = [&](const Ray& ray) { return any_hit(ray); };
+    const auto work = [&](std::span<const Ray> part, std::span<bool> answers) {
+        if (const WideBvh* tree = tree_of(part))
+            raywise::any_hits(*tree, part, answers, serial_executor(), params_.trace_mode);
+        else
+            std::transform(part.begin(), part.end(), answers.begin(), answer);
+    };
+    detail::for_each_part(rays, occluded, executor, work);
+}
+
+Accelerator Accelerator::with_trace_mode(TraceMode mode) const {
+    Accelerator other = *this;
+    other.params_.trace_mode = mode;
+    return other;
 }
 
 AreaHandle Accelerator::operator[](std::string_view name) const {

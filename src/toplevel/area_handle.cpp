@@ -54,21 +54,6 @@ void occluded_by_blocks(
     }
 }
 
-/// Calls `work(rays, answers)` for parts of a batch that stay in the cache between a look at their
-/// rays and the tracing of them.
-template <class Answer, class Work>
-void for_each_part(
-    std::span<const Ray> rays,
-    std::span<Answer> answers,
-    const Executor& executor,
-    const Work& work
-) {
-    executor
-        .for_each_chunk(rays.size(), detail::batch_chunk, [&](std::size_t begin, std::size_t end) {
-            work(rays.subspan(begin, end - begin), answers.subspan(begin, end - begin));
-        });
-}
-
 } // namespace
 
 const LocalStructure& AreaHandle::structure() const {
@@ -79,6 +64,10 @@ const WideBvh* AreaHandle::whole_tree() const {
     const LocalStructure& own = structure();
     if (own.is_whole && own.has_tree) return own.tree.wide();
     return own.has_tree ? nullptr : owner_->global_tree().wide();
+}
+
+TraceMode AreaHandle::trace_mode() const {
+    return owner_->params().trace_mode;
 }
 
 const InfluenceArea& AreaHandle::area() const {
@@ -109,7 +98,7 @@ std::optional<Hit> AreaHandle::closest_hit(const Ray& ray) const {
 }
 
 std::optional<Hit> AreaHandle::closest_hit_by_trees(const Ray& ray) const {
-    if (const WideBvh* whole = whole_tree()) return raywise::closest_hit(*whole, ray);
+    if (const WideBvh* whole = whole_tree()) return raywise::closest_hit(*whole, ray, trace_mode());
     if (!is_valid(ray)) return std::nullopt;
     SilentQuery nobody;
     return owner_->closest_by_mode(ray, owner_->candidates_in(id_, ray), nobody);
@@ -130,7 +119,7 @@ bool AreaHandle::occluded(const Vec3& point, float t_min, PrimId surface) const 
 }
 
 bool AreaHandle::any_hit_by_trees(const Ray& ray) const {
-    if (const WideBvh* whole = whole_tree()) return raywise::any_hit(*whole, ray);
+    if (const WideBvh* whole = whole_tree()) return raywise::any_hit(*whole, ray, trace_mode());
     if (!is_valid(ray)) return false;
     SilentQuery nobody;
     return owner_->any_by_mode(ray, owner_->candidates_in(id_, ray), nobody);
@@ -168,9 +157,12 @@ void AreaHandle::closest_hits(
         return closest_hits_once(own.triangles->view(), *own.pencil, rays, hits, executor);
     const auto by_trees = [&](const Ray& ray) { return closest_hit_by_trees(ray).value_or(Hit{}); };
     if (grid_ != nullptr) return grid_->closest_hits(rays, hits, by_trees, executor);
-    for_each_part(rays, hits, executor, [&](std::span<const Ray> part, std::span<Hit> answers) {
+    if (const WideBvh* whole = whole_tree())
+        return raywise::closest_hits(*whole, rays, hits, executor, trace_mode());
+    const auto work = [&](std::span<const Ray> part, std::span<Hit> answers) {
         std::transform(part.begin(), part.end(), answers.begin(), by_trees);
-    });
+    };
+    detail::for_each_part(rays, hits, executor, work);
 }
 
 void AreaHandle::any_hits(
@@ -184,14 +176,12 @@ void AreaHandle::any_hits(
         return any_hits_once(own.triangles->view(), *own.pencil, rays, occluded, executor);
     const auto by_trees = [&](const Ray& ray) { return any_hit_by_trees(ray); };
     if (grid_ != nullptr) return grid_->any_hits(rays, occluded, by_trees, executor);
-    for_each_part(
-        rays,
-        occluded,
-        executor,
-        [&](std::span<const Ray> part, std::span<bool> answers) {
-            std::transform(part.begin(), part.end(), answers.begin(), by_trees);
-        }
-    );
+    if (const WideBvh* whole = whole_tree())
+        return raywise::any_hits(*whole, rays, occluded, executor, trace_mode());
+    const auto work = [&](std::span<const Ray> part, std::span<bool> answers) {
+        std::transform(part.begin(), part.end(), answers.begin(), by_trees);
+    };
+    detail::for_each_part(rays, occluded, executor, work);
 }
 
 void AreaHandle::occluded(

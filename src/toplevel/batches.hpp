@@ -1,4 +1,4 @@
-// Batches by single queries, for whatever answers them.
+// What the batches of an accelerator and of its areas share.
 #pragma once
 
 #include <raywise/core/error.hpp>
@@ -16,31 +16,17 @@ inline void check_answers(std::size_t questions, std::size_t answers) {
     if (questions != answers) throw Error("accelerator: as many answers as questions are needed");
 }
 
-template <class Structure>
-void closest_batch(
-    const Structure& structure,
+/// Calls `work(rays, answers)` for parts of a batch that stay in the cache between a look at their
+/// rays and the tracing of them.
+template <class Answer, class Work>
+void for_each_part(
     std::span<const Ray> rays,
-    std::span<Hit> hits,
-    const Executor& executor
+    std::span<Answer> answers,
+    const Executor& executor,
+    const Work& work
 ) {
-    check_answers(rays.size(), hits.size());
     executor.for_each_chunk(rays.size(), batch_chunk, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-            hits[i] = structure.closest_hit(rays[i]).value_or(Hit{});
-    });
-}
-
-template <class Structure>
-void any_batch(
-    const Structure& structure,
-    std::span<const Ray> rays,
-    std::span<bool> occluded,
-    const Executor& executor
-) {
-    check_answers(rays.size(), occluded.size());
-    executor.for_each_chunk(rays.size(), batch_chunk, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-            occluded[i] = structure.any_hit(rays[i]);
+        work(rays.subspan(begin, end - begin), answers.subspan(begin, end - begin));
     });
 }
 

@@ -108,6 +108,8 @@ class Usage(CliTest):
             ["info", *TINY, "--max-memory", "lots"],
             ["trace", *TINY],
             ["trace", *TINY, "--sample", "5", "--rays", "rays.npy"],
+            ["trace", *TINY, "--sample", "5", "--fast", "--verify", "5"],
+            ["trace", *TINY, "--sample", "5", "--fast", "--tree", "tree.rwtree"],
             ["compare", *TINY, "--seeds", "0"],
             ["convert", *TINY],
         ):

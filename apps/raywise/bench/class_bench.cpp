@@ -83,7 +83,7 @@ private:
 
     BenchRow measure_single(BenchRow row) const {
         row.peer = Peer::single;
-        const auto ours = [&] { race_.trace_singly(); };
+        const auto ours = [&] { race_.trace_singly(contest_.accelerator); };
         const auto peer = [&] { race_.trace_peer(contest_.peers.high, {}); };
         measure(row, ours, peer, {});
         if (row.count == 0) return row;
@@ -91,6 +91,10 @@ private:
             measure_sorted(row);
             const auto robust = [&] { race_.trace_peer(*contest_.peers.robust, {}); };
             row.ratio_robust = timed(ours, robust).ratio;
+            if (contest_.fast != nullptr) {
+                const auto fast = [&] { race_.trace_singly(*contest_.fast); };
+                measure_fast(row, fast, peer, robust);
+            }
         }
         if (kind_of(rays_.rays) == RayKind::general) return row;
         const auto searching = [&] { race_.trace_searching(); };
@@ -104,14 +108,28 @@ private:
     BenchRow measure_best(BenchRow row) const {
         row.peer = Peer::best;
         const PeerCall call = race_.fastest_call(contest_.peers.high);
-        const auto ours = [&] { race_.trace_in_batches(); };
+        const auto ours = [&] { race_.trace_in_batches(contest_.accelerator); };
         const auto peer = [&] { race_.trace_peer(contest_.peers.high, call); };
         measure(row, ours, peer, call);
         if (row.count == 0 || !effort_.is_thorough) return row;
         const PeerCall robust_call = race_.fastest_call(*contest_.peers.robust);
         const auto robust = [&] { race_.trace_peer(*contest_.peers.robust, robust_call); };
         row.ratio_robust = timed(ours, robust).ratio;
+        if (contest_.fast != nullptr) {
+            const auto fast = [&] { race_.trace_in_batches(*contest_.fast); };
+            measure_fast(row, fast, peer, robust);
+        }
         return row;
+    }
+
+    /// Our fast mode beside both of the peer's.
+    template <class Fast, class Theirs, class Robust>
+    void
+    measure_fast(BenchRow& row, const Fast& fast, const Theirs& peer, const Robust& robust) const {
+        fast();
+        row.fast_wrong = race_.wrong_fast_answers();
+        row.ratio_fast = timed(fast, peer).ratio;
+        row.ratio_fast_robust = timed(fast, robust).ratio;
     }
 
     template <class Ours, class Theirs>
@@ -135,7 +153,7 @@ private:
     void measure_sorted(BenchRow& row) const {
         const ClassRays in_order = sorted(rays_);
         const Race<Answer> race(contest_, in_order, machine_);
-        const auto ours = [&] { race.trace_singly(); };
+        const auto ours = [&] { race.trace_singly(contest_.accelerator); };
         const auto peer = [&] { race.trace_peer(contest_.peers.high, {}); };
         row.ratio_sorted = timed(ours, peer).ratio;
         row.mismatches += race.wrong_answers();

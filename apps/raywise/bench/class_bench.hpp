@@ -20,7 +20,7 @@ namespace raywise::app {
 struct Effort {
     double budget_ms = 0;        ///< of each timed pair
     std::size_t brute_force = 0; ///< triangle tests that a class may take to check the oracle
-    bool is_thorough = true;     ///< also sorted rays, and Embree's robust scene
+    bool is_thorough = true;     ///< also sorted rays, Embree's robust scene, and our fast mode
 };
 
 /// Where structures are built and answers checked, and where rays are traced.
@@ -38,6 +38,7 @@ struct Peers {
 /// Who answers the rays of a class.
 struct Contest {
     const Accelerator& accelerator; ///< with the areas that the class names
+    const Accelerator* fast;        ///< the same in TraceMode::fast; null: not measured
     const Peers& peers;
     const ExactOracle& oracle;
     TriangleView triangles;

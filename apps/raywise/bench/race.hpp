@@ -149,17 +149,17 @@ public:
 
     // What can be timed.
 
-    void trace_singly() const {
+    void trace_singly(const Accelerator& accelerator) const {
         for_each_emitter(ours_, [&](std::size_t e, std::span<Answer> answers) {
-            with_structure(rays_.emitters[e], [&](const auto& structure) {
+            with_structure(accelerator, rays_.emitters[e], [&](const auto& structure) {
                 ask_singly(structure, rays_.emitters[e].rays, answers, machine_.trace);
             });
         });
     }
 
-    void trace_in_batches() const {
+    void trace_in_batches(const Accelerator& accelerator) const {
         for_each_emitter(ours_, [&](std::size_t e, std::span<Answer> answers) {
-            with_structure(rays_.emitters[e], [&](const auto& structure) {
+            with_structure(accelerator, rays_.emitters[e], [&](const auto& structure) {
                 ask_all(structure, rays_.emitters[e].rays, answers, machine_.trace);
             });
         });
@@ -209,21 +209,10 @@ public:
         );
     }
 
-    [[nodiscard]] std::size_t wrong_peer_answers() const {
-        std::size_t first = 0;
-        std::size_t wrong = 0;
-        for (const EmitterRays& of_emitter : rays_.emitters) {
-            const std::span<const Ray> rays(of_emitter.rays);
-            const std::span<const Answer> right = right_.all().subspan(first, rays.size());
-            const std::span<const Answer> found = peers_.all().subspan(first, rays.size());
-            if constexpr (std::is_same_v<Answer, bool>)
-                wrong += count_wrong(right, found);
-            else
-                wrong += count_far_off(rays, right, found);
-            first += rays.size();
-        }
-        return wrong;
-    }
+    [[nodiscard]] std::size_t wrong_peer_answers() const { return rounded_wrong(peers_); }
+
+    /// Of ours in the fast mode, which rounds t as the peer does.
+    [[nodiscard]] std::size_t wrong_fast_answers() const { return rounded_wrong(ours_); }
 
     [[nodiscard]] double hit_share() const {
         std::size_t hits = 0;
@@ -250,7 +239,7 @@ public:
         constexpr std::size_t every = 8;
         std::size_t counted = 0;
         for (const EmitterRays& of_emitter : rays_.emitters) {
-            with_structure(of_emitter, [&](const auto& structure) {
+            with_structure(contest_.accelerator, of_emitter, [&](const auto& structure) {
                 for (std::size_t i = 0; i < of_emitter.rays.size(); i += every, ++counted) {
                     if constexpr (std::is_same_v<Answer, bool>)
                         static_cast<void>(structure.any_hit(of_emitter.rays[i], counts));
@@ -265,11 +254,30 @@ public:
 private:
     /// The handle of the emitter's area, or the whole accelerator for rays of no area.
     template <class Use>
-    void with_structure(const EmitterRays& of_emitter, const Use& use) const {
+    void
+    with_structure(const Accelerator& accelerator, const EmitterRays& of_emitter, const Use& use)
+        const {
         if (of_emitter.area.empty())
-            use(contest_.accelerator);
+            use(accelerator);
         else
-            use(contest_.accelerator[of_emitter.area]);
+            use(accelerator[of_emitter.area]);
+    }
+
+    /// Answers that are wrong by more than roundings of t.
+    [[nodiscard]] std::size_t rounded_wrong(const Answers<Answer>& answers) const {
+        std::size_t first = 0;
+        std::size_t wrong = 0;
+        for (const EmitterRays& of_emitter : rays_.emitters) {
+            const std::span<const Ray> rays(of_emitter.rays);
+            const std::span<const Answer> right = right_.all().subspan(first, rays.size());
+            const std::span<const Answer> found = answers.all().subspan(first, rays.size());
+            if constexpr (std::is_same_v<Answer, bool>)
+                wrong += count_wrong(right, found);
+            else
+                wrong += count_far_off(rays, right, found);
+            first += rays.size();
+        }
+        return wrong;
     }
 
     /// Calls `trace(emitter, answers)` for each.

@@ -38,16 +38,19 @@ struct BenchRow {
     double ratio = 0;  ///< ours over the peer's, median of pairs
     double spread = 0; ///< see SideBySide
     int rounds = 0;
-    std::string structure;                     ///< what ours traced through, of each emitter
-    std::string peer_call;                     ///< what the peer was called with
-    std::optional<double> ratio_robust = {};   ///< the same beside RTC_SCENE_FLAG_ROBUST
-    std::optional<double> ratio_sorted = {};   ///< rays sorted beforehand, for both sides
-    std::optional<double> searched_mrays = {}; ///< ours when it must find the area itself
-    std::size_t mismatches = 0;                ///< answers of ours that the oracle contradicts
-    std::size_t peer_wrong = 0;                ///< answers of the peer's
-    std::size_t brute_forced = 0;              ///< rays on which the oracle itself was checked
-    double node_visits = 0;                    ///< per ray
-    double triangle_tests = 0;                 ///< per ray
+    std::string structure;                        ///< what ours traced through, of each emitter
+    std::string peer_call;                        ///< what the peer was called with
+    std::optional<double> ratio_robust = {};      ///< the same beside RTC_SCENE_FLAG_ROBUST
+    std::optional<double> ratio_fast = {};        ///< ours in TraceMode::fast beside the peer
+    std::optional<double> ratio_fast_robust = {}; ///< the same beside RTC_SCENE_FLAG_ROBUST
+    std::optional<std::size_t> fast_wrong = {};   ///< answers of TraceMode::fast, as peer_wrong
+    std::optional<double> ratio_sorted = {};      ///< rays sorted beforehand, for both sides
+    std::optional<double> searched_mrays = {};    ///< ours when it must find the area itself
+    std::size_t mismatches = 0;                   ///< answers of ours that the oracle contradicts
+    std::size_t peer_wrong = 0;                   ///< answers of the peer's
+    std::size_t brute_forced = 0;                 ///< rays on which the oracle itself was checked
+    double node_visits = 0;                       ///< per ray
+    double triangle_tests = 0;                    ///< per ray
 };
 
 /// How long a structure takes to build and how large it is.

@@ -190,9 +190,15 @@ private:
         if (classes.empty()) return;
         const std::string name = fmt::format("accelerator of {} areas", areas.size());
         const Accelerator accelerator = build(name, std::move(areas));
-        const Contest contest{accelerator, peers, oracle_, scene_.view()};
+        std::optional<Accelerator> fast;
+        if (params_.effort.is_thorough) fast = accelerator.with_trace_mode(TraceMode::fast);
         for (const ClassRays* rays : classes) {
             step(std::string(name_of(rays->rays)));
+            // Exact rays go through grids, which know no other mode.
+            const bool has_fast = fast && kind_of(rays->rays) != RayKind::exact;
+            const Contest contest{
+                accelerator, has_fast ? &*fast : nullptr, peers, oracle_, scene_.view()
+            };
             for (BenchRow& row : bench_class(contest, *rays, params_.effort, machine_)) {
                 row.scene = title_;
                 row.scene_hash = hash_;

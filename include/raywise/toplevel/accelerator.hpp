@@ -23,6 +23,7 @@
 #include <raywise/toplevel/served.hpp>
 #include <raywise/toplevel/structure_choice.hpp>
 #include <raywise/toplevel/traced_tree.hpp>
+#include <raywise/trace/wide.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -66,7 +67,8 @@ struct AcceleratorParams {
     RegionIndexParams index{};     ///< OctreeMode::over only with QueryMode::first_hit_wins
     int max_candidates = 1;        ///< areas that a ray tries before the global tree, in [1, 8]
     QueryMode mode = QueryMode::exact;
-    std::optional<GainParams> gain{}; ///< absent: every area is used
+    TraceMode trace_mode = TraceMode::watertight; ///< of wide trees; all else is always exact
+    std::optional<GainParams> gain{};             ///< absent: every area is used
 };
 
 /// The accelerator of the thesis: binary trees everywhere, one for each area. What analysis wants:
@@ -112,10 +114,11 @@ class AcceleratorBuilder;
 
 /// Answers ray queries over all triangles; rays that belong to an influence area are answered by
 /// its own structure as far as that proves the answer. (t, id) are those of one tree over
-/// everything, for every ray. A ray that nobody assigned to an area is compared with the pencils of
-/// the areas that have a grid, then, where areas have trees, searched by its origin. Owns copies of
-/// the triangles, so the caller's mesh may go. Const queries are thread-safe, and single ones
-/// allocate nothing; a ray that is not `is_valid` misses.
+/// everything, for every ray, unless AcceleratorParams::trace_mode is fast. A ray that nobody
+/// assigned to an area is compared with the pencils of the areas that have a grid, then, where
+/// areas have trees, searched by its origin. Owns copies of the triangles, so the caller's mesh may
+/// go. Const queries are thread-safe, and single ones allocate nothing; a ray that is not
+/// `is_valid` misses.
 class Accelerator {
 public:
     /// The hit with the smallest (t, id) in [t_min, t_max].
@@ -158,6 +161,9 @@ public:
         const Executor& executor = serial_executor(),
         const Progress& progress = {}
     ) const;
+
+    /// A copy of this accelerator whose wide trees are traced in that mode.
+    [[nodiscard]] Accelerator with_trace_mode(TraceMode mode) const;
 
     /// The area of that name, for callers who know which area their rays belong to. Throws Error
     /// when there is none. Valid as long as the accelerator stays where it is.
@@ -210,6 +216,9 @@ private:
             if (gridded.pencil.holds(ray)) return false;
         return true;
     }
+
+    /// The tree over everything where it alone answers all of the rays, else null.
+    [[nodiscard]] const WideBvh* tree_of(std::span<const Ray> rays) const;
 
     /// The areas to ask for a valid ray, best first.
     [[nodiscard]] Candidates candidates_of(const Ray& ray) const;
@@ -325,6 +334,8 @@ public:
 
 private:
     [[nodiscard]] const LocalStructure& structure() const;
+
+    [[nodiscard]] TraceMode trace_mode() const;
 
     /// The wide tree over all triangles that answers what the grid does not, or null when there is
     /// more to it than one tree.

@@ -63,7 +63,7 @@ Accelerator::closest_among(const Ray& ray, const Candidates& candidates, Observe
     Ray rest = ray;
     std::optional<Hit> best;
     const auto search = [&](const TracedTree& tree) {
-        const auto hit = tree.closest_hit(rest, seen);
+        const auto hit = tree.closest_hit(rest, seen, params_.trace_mode);
         if (!hit || (best && !is_closer(*hit, *best))) return;
         best = hit;
         rest.t_max = hit->t;
@@ -87,7 +87,7 @@ template <class Observer>
 bool Accelerator::any_among(const Ray& ray, const Candidates& candidates, Observer& seen) const {
     Ray rest = ray;
     const auto search = [&](const TracedTree& tree) {
-        const bool hit = tree.any_hit(rest, seen);
+        const bool hit = tree.any_hit(rest, seen, params_.trace_mode);
         if (hit) seen.found();
         return hit;
     };
@@ -111,14 +111,14 @@ Accelerator::first_hit_wins(const Ray& ray, const Candidates& candidates, Observ
     for (std::size_t i = 0; i < candidates.count; ++i) {
         const LocalStructure& structure = local(candidates.items[i].area);
         seen.search(candidates.items[i].area, ray.t_min, ray.t_max);
-        const auto hit = structure.tree.closest_hit(ray, seen);
+        const auto hit = structure.tree.closest_hit(ray, seen, params_.trace_mode);
         if (hit) {
             seen.found();
             return hit;
         }
     }
     seen.search(std::nullopt, ray.t_min, ray.t_max);
-    const auto hit = global_tree_.closest_hit(ray, seen);
+    const auto hit = global_tree_.closest_hit(ray, seen, params_.trace_mode);
     if (hit) seen.found();
     return hit;
 }
@@ -169,12 +169,12 @@ void Accelerator::all_hits(const Ray& ray, Visitor&& visit) const {
     if (params_.mode == QueryMode::exact && candidates.count > 0 &&
         candidates.items[0].exit > ray.t_min) {
         rest.t_max = std::min(ray.t_max, candidates.items[0].exit);
-        local(candidates.items[0].area).tree.all_hits(rest, collect);
+        local(candidates.items[0].area).tree.all_hits(rest, collect, params_.trace_mode);
         is_done = rest.t_max == ray.t_max;
         rest.t_min = rest.t_max;
         rest.t_max = ray.t_max;
     }
-    if (!is_done) global_tree_.all_hits(rest, collect);
+    if (!is_done) global_tree_.all_hits(rest, collect, params_.trace_mode);
     // A hit at the exit, or of a triangle that stands in several leaves, was found twice.
     sort_hits(hits);
     for (const Hit& hit : hits)

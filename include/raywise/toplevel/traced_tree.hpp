@@ -27,8 +27,8 @@ struct BinaryTree {
     PackedTriangles triangles;
 };
 
-/// Answers queries over the triangles of one tree; both kinds give the same (t, id). A default one
-/// holds nothing: every ray misses.
+/// Answers queries over the triangles of one tree; both kinds give the same (t, id), but for wide
+/// trees in TraceMode::fast. A default one holds nothing: every ray misses.
 class TracedTree {
 public:
     TracedTree() = default;
@@ -55,13 +55,14 @@ public:
     [[nodiscard]] std::size_t size_in_bytes() const;
 
     template <QueryObserver Observer>
-    [[nodiscard]] std::optional<Hit> closest_hit(const Ray& ray, Observer& seen) const {
+    [[nodiscard]] std::optional<Hit>
+    closest_hit(const Ray& ray, Observer& seen, TraceMode mode = TraceMode::watertight) const {
         if (const WideBvh* tree = wide()) {
             if constexpr (std::is_same_v<Observer, SilentQuery>) {
-                return raywise::closest_hit(*tree, ray);
+                return raywise::closest_hit(*tree, ray, mode);
             } else {
                 Counts counts;
-                const auto hit = raywise::closest_hit(*tree, ray, counts);
+                const auto hit = raywise::closest_hit(*tree, ray, counts, mode);
                 seen.steps(counts);
                 return hit;
             }
@@ -70,13 +71,14 @@ public:
     }
 
     template <QueryObserver Observer>
-    [[nodiscard]] bool any_hit(const Ray& ray, Observer& seen) const {
+    [[nodiscard]] bool
+    any_hit(const Ray& ray, Observer& seen, TraceMode mode = TraceMode::watertight) const {
         if (const WideBvh* tree = wide()) {
             if constexpr (std::is_same_v<Observer, SilentQuery>) {
-                return raywise::any_hit(*tree, ray);
+                return raywise::any_hit(*tree, ray, mode);
             } else {
                 Counts counts;
-                const bool hit = raywise::any_hit(*tree, ray, counts);
+                const bool hit = raywise::any_hit(*tree, ray, counts, mode);
                 seen.steps(counts);
                 return hit;
             }
@@ -87,9 +89,9 @@ public:
     /// Calls `visit(const Hit&)` for every hit, in no particular order; once per triangle, unless
     /// the tree holds some in several slots.
     template <class Visitor>
-    void all_hits(const Ray& ray, Visitor&& visit) const {
+    void all_hits(const Ray& ray, Visitor&& visit, TraceMode mode = TraceMode::watertight) const {
         if (const WideBvh* tree = wide())
-            raywise::all_hits(*tree, ray, visit);
+            raywise::all_hits(*tree, ray, visit, mode);
         else
             raywise::all_hits(binary()->tree, binary()->triangles, ray, visit);
     }

@@ -17,10 +17,15 @@
 
 namespace raywise {
 
+/// Which arithmetic decides what a ray hits.
 enum class TraceMode : std::uint8_t {
     watertight, ///< as ExactKernel: the answers of brute force, to the bit
-    fast,       ///< float arithmetic without guards: hits near edges may be lost or doubled, and t
-                ///< carries some rounding errors
+    /// Floats alone. A ray that passes within some roundings of an edge may miss the triangles on
+    /// both sides or hit one that it passes by; t, u and v are off by some roundings of the
+    /// triangle's coordinates as seen from the origin, so that of triangles closer together than
+    /// that either may be the closest. Still no hit outside [t_min, t_max], and rays that are not
+    /// `is_valid` miss. Answers may differ between machines; single queries and batches may too.
+    fast,
 };
 
 /// The hit with the smallest (t, triangle id) among those with t in [t_min, t_max]. Nothing for an
@@ -43,6 +48,8 @@ void all_hits(
 );
 
 /// closest_hit of every ray, in parallel; a miss is `Hit{}`. Throws Error when the sizes differ.
+/// Fastest where rays side by side run the same way from and to places close together, as those of
+/// a camera do in tiles.
 void closest_hits(
     const WideBvh& tree,
     std::span<const Ray> rays,
@@ -51,7 +58,7 @@ void closest_hits(
     TraceMode mode = TraceMode::watertight
 );
 
-/// any_hit of every ray, in parallel. Throws Error when the sizes differ.
+/// any_hit of every ray, in parallel. Throws Error when the sizes differ. See closest_hits.
 void any_hits(
     const WideBvh& tree,
     std::span<const Ray> rays,

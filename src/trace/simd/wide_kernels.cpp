@@ -27,6 +27,7 @@
 #include <hwy/foreach_target.h>
 // After the above, which includes this file again.
 #include "trace/simd/wide_block.inl.hpp"
+#include "trace/simd/wide_group_query.inl.hpp"
 #include "trace/simd/wide_prepare.inl.hpp"
 #include "trace/simd/wide_settle.inl.hpp"
 #include "trace/simd/wide_traverse.inl.hpp"
@@ -52,7 +53,7 @@ fast_hit(const Ray& ray, const TriangleBlock& block, const Candidates& found, st
     const Triangle triangle = block.triangle(lane);
     const bool front =
         dot(cross(triangle.v1 - triangle.v0, triangle.v2 - triangle.v0), ray.direction) < 0;
-    return {found.t[lane] + 0.0F, found.u[lane], found.v[lane], block.prims[lane], front};
+    return {found.low[lane] + 0.0F, found.u[lane], found.v[lane], block.prims[lane], front};
 }
 
 /// Triangles that the filter leaves open. Few rays meet one; a call where they do would make every
@@ -133,7 +134,7 @@ struct Nearest {
     /// Takes the lane when it is surely nearer than all before; false when that is not known.
     HWY_INLINE bool take(const TriangleBlock& from, const Candidates& found, std::size_t index) {
         if constexpr (mode == TraceMode::fast) {
-            const float t = found.t[index] + 0.0F;
+            const float t = found.low[index] + 0.0F;
             if (t > limit ||
                 (t == limit && block != nullptr && from.prims[index] > block->prims[lane]))
                 return true;
@@ -326,6 +327,28 @@ bool any_counted(const WideBvh& tree, const Ray& ray, Counts& counts) {
     return any<mode>(tree, ray, counts);
 }
 
+#if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3
+
+template <TraceMode mode>
+void closest_batch(const WideBvh& tree, const Ray* rays, Hit* hits, std::size_t count) {
+    by_groups(
+        count,
+        [&](std::size_t i) { return closest_of_group<mode>(tree, rays + i, hits + i); },
+        [&](std::size_t i) { hits[i] = closest_silent<mode>(tree, rays[i]).value_or(Hit{}); }
+    );
+}
+
+template <TraceMode mode>
+void any_batch(const WideBvh& tree, const Ray* rays, bool* occluded, std::size_t count) {
+    by_groups(
+        count,
+        [&](std::size_t i) { return any_of_group<mode>(tree, rays + i, occluded + i); },
+        [&](std::size_t i) { occluded[i] = any_silent<mode>(tree, rays[i]); }
+    );
+}
+
+#else
+
 template <TraceMode mode>
 void closest_batch(const WideBvh& tree, const Ray* rays, Hit* hits, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i)
@@ -337,6 +360,8 @@ void any_batch(const WideBvh& tree, const Ray* rays, bool* occluded, std::size_t
     for (std::size_t i = 0; i < count; ++i)
         occluded[i] = any_silent<mode>(tree, rays[i]);
 }
+
+#endif
 
 template <TraceMode mode>
 constexpr WideKernels kernels_of_mode() {

@@ -33,7 +33,10 @@ template <class D, class Mask>
 HWY_INLINE std::uint32_t bits_of(D d, Mask mask) {
     std::array<std::uint8_t, 8> bits{};
     hn::StoreMaskBits(d, mask, bits.data());
-    return bits[0];
+    if constexpr (hn::MaxLanes(D()) <= 8)
+        return bits[0];
+    else
+        return bits[0] | std::uint32_t{bits[1]} << 8U;
 }
 
 HWY_INLINE const float* floats_at(const void* base, std::size_t bytes) {
