@@ -1,5 +1,6 @@
 // Queries of callers who know which area their rays belong to.
 #include "toplevel/batches.hpp"
+#include "toplevel/faster_way.hpp"
 
 #include <raywise/core/error.hpp>
 #include <raywise/pencil/inversion.hpp>
@@ -156,9 +157,25 @@ void AreaHandle::closest_hits(
     if (is_worth_drawing(rays.size()) && are_exact(rays, executor))
         return closest_hits_once(own.triangles->view(), *own.pencil, rays, hits, executor);
     const auto by_trees = [&](const Ray& ray) { return closest_hit_by_trees(ray).value_or(Hit{}); };
-    if (grid_ != nullptr) return grid_->closest_hits(rays, hits, by_trees, executor);
-    if (const WideBvh* whole = whole_tree())
-        return raywise::closest_hits(*whole, rays, hits, executor, trace_mode());
+    const WideBvh* const whole = whole_tree();
+    using Count = std::size_t;
+    const auto by_grid = [&](Count begin, Count end, const Executor& by) {
+        const Count count = end - begin;
+        grid_->closest_hits(rays.subspan(begin, count), hits.subspan(begin, count), by_trees, by);
+    };
+    const auto by_whole = [&](Count begin, Count end, const Executor& by) {
+        const Count count = end - begin;
+        raywise::closest_hits(
+            *whole, rays.subspan(begin, count), hits.subspan(begin, count), by, trace_mode()
+        );
+    };
+    if (grid_ != nullptr) {
+        // The tree traces rays of a camera in groups, which pays where they meet the same nodes.
+        if (whole != nullptr && trace_mode() == TraceMode::watertight)
+            return detail::take_faster_way(rays.size(), executor, by_grid, by_whole);
+        return by_grid(0, rays.size(), executor);
+    }
+    if (whole != nullptr) return by_whole(0, rays.size(), executor);
     const auto work = [&](std::span<const Ray> part, std::span<Hit> answers) {
         std::transform(part.begin(), part.end(), answers.begin(), by_trees);
     };

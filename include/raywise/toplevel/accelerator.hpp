@@ -297,7 +297,8 @@ public:
     [[nodiscard]] bool occluded(const Vec3& point, float t_min = 0, PrimId surface = no_prim) const;
 
     /// See Accelerator::closest_hits. Fastest when the pencil holds every ray: a grid then answers
-    /// several at a time, and an inversion a large batch at once.
+    /// several at a time, and an inversion a large batch at once. Where a grid and the tree over
+    /// everything could answer a large batch, both begin and the faster one goes on.
     void closest_hits(
         std::span<const Ray> rays,
         std::span<Hit> hits,
