@@ -147,6 +147,40 @@ bool AreaHandle::is_worth_drawing(std::size_t rays) const {
     return grid_ == nullptr && triangles != nullptr && rays >= triangles->view().size() / 8;
 }
 
+/// By the area's grid, by the tree over everything, or ray by ray where there is neither. A grid
+/// has a rival in the tree, which traces rays of a batch in groups: that pays where they meet the
+/// same nodes.
+template <class Answer, class ByGrid, class ByWhole, class ByTrees>
+void AreaHandle::answer_batch(
+    std::span<const Ray> rays,
+    std::span<Answer> answers,
+    const Executor& executor,
+    const ByGrid& by_grid,
+    const ByWhole& by_whole,
+    const ByTrees& by_trees
+) const {
+    const bool has_rival = whole_tree() != nullptr && trace_mode() == TraceMode::watertight;
+    const auto in_parts = [&](const auto& way) {
+        return [&](std::size_t begin, std::size_t end, const Executor& by) {
+            way(rays.subspan(begin, end - begin), answers.subspan(begin, end - begin), by);
+        };
+    };
+    if (grid_ != nullptr && has_rival)
+        return detail::take_faster_way(
+            rays.size(), executor, in_parts(by_grid), in_parts(by_whole)
+        );
+    if (grid_ != nullptr) return by_grid(rays, answers, executor);
+    if (whole_tree() != nullptr) return by_whole(rays, answers, executor);
+    detail::for_each_part(
+        rays,
+        answers,
+        executor,
+        [&](std::span<const Ray> part, std::span<Answer> to) {
+            std::transform(part.begin(), part.end(), to.begin(), by_trees);
+        }
+    );
+}
+
 void AreaHandle::closest_hits(
     std::span<const Ray> rays,
     std::span<Hit> hits,
@@ -157,29 +191,18 @@ void AreaHandle::closest_hits(
     if (is_worth_drawing(rays.size()) && are_exact(rays, executor))
         return closest_hits_once(own.triangles->view(), *own.pencil, rays, hits, executor);
     const auto by_trees = [&](const Ray& ray) { return closest_hit_by_trees(ray).value_or(Hit{}); };
-    const WideBvh* const whole = whole_tree();
-    using Count = std::size_t;
-    const auto by_grid = [&](Count begin, Count end, const Executor& by) {
-        const Count count = end - begin;
-        grid_->closest_hits(rays.subspan(begin, count), hits.subspan(begin, count), by_trees, by);
-    };
-    const auto by_whole = [&](Count begin, Count end, const Executor& by) {
-        const Count count = end - begin;
-        raywise::closest_hits(
-            *whole, rays.subspan(begin, count), hits.subspan(begin, count), by, trace_mode()
-        );
-    };
-    if (grid_ != nullptr) {
-        // The tree traces rays of a camera in groups, which pays where they meet the same nodes.
-        if (whole != nullptr && trace_mode() == TraceMode::watertight)
-            return detail::take_faster_way(rays.size(), executor, by_grid, by_whole);
-        return by_grid(0, rays.size(), executor);
-    }
-    if (whole != nullptr) return by_whole(0, rays.size(), executor);
-    const auto work = [&](std::span<const Ray> part, std::span<Hit> answers) {
-        std::transform(part.begin(), part.end(), answers.begin(), by_trees);
-    };
-    detail::for_each_part(rays, hits, executor, work);
+    answer_batch(
+        rays,
+        hits,
+        executor,
+        [&](std::span<const Ray> part, std::span<Hit> answers, const Executor& by) {
+            grid_->closest_hits(part, answers, by_trees, by);
+        },
+        [&](std::span<const Ray> part, std::span<Hit> answers, const Executor& by) {
+            raywise::closest_hits(*whole_tree(), part, answers, by, trace_mode());
+        },
+        by_trees
+    );
 }
 
 void AreaHandle::any_hits(
@@ -192,13 +215,18 @@ void AreaHandle::any_hits(
     if (is_worth_drawing(rays.size()) && are_exact(rays, executor))
         return any_hits_once(own.triangles->view(), *own.pencil, rays, occluded, executor);
     const auto by_trees = [&](const Ray& ray) { return any_hit_by_trees(ray); };
-    if (grid_ != nullptr) return grid_->any_hits(rays, occluded, by_trees, executor);
-    if (const WideBvh* whole = whole_tree())
-        return raywise::any_hits(*whole, rays, occluded, executor, trace_mode());
-    const auto work = [&](std::span<const Ray> part, std::span<bool> answers) {
-        std::transform(part.begin(), part.end(), answers.begin(), by_trees);
-    };
-    detail::for_each_part(rays, occluded, executor, work);
+    answer_batch(
+        rays,
+        occluded,
+        executor,
+        [&](std::span<const Ray> part, std::span<bool> answers, const Executor& by) {
+            grid_->any_hits(part, answers, by_trees, by);
+        },
+        [&](std::span<const Ray> part, std::span<bool> answers, const Executor& by) {
+            raywise::any_hits(*whole_tree(), part, answers, by, trace_mode());
+        },
+        by_trees
+    );
 }
 
 void AreaHandle::occluded(

@@ -11,8 +11,8 @@ namespace raywise::detail {
 
 /// Answers the questions [0, count), each by a call of `first` or `second` with (begin, end,
 /// executor), whose answers must be the same. Both answer the same few of them, from all over the
-/// batch and in series; the one that took less time answers all others. Only `first` when there are
-/// too few to find out.
+/// batch and in series, until one has clearly taken less time; that one answers all others. Only
+/// `first` when there are too few to find out.
 template <class First, class Second>
 void take_faster_way(
     std::size_t count,
@@ -22,30 +22,34 @@ void take_faster_way(
 ) {
     constexpr std::size_t parts = 8;
     constexpr std::size_t part = 128;
-    constexpr std::size_t worthwhile = 16 * parts * part;
+    constexpr std::size_t worthwhile = 32 * parts * part;
     if (count < worthwhile) return first(std::size_t{0}, count, executor);
 
-    using Clock = std::chrono::steady_clock;
-    std::array<Clock::duration, 2> taken{};
-    const auto begin_of = [&](std::size_t i) { return count / parts * i; };
-    for (std::size_t i = 0; i < 2 * parts; ++i) {
-        const std::size_t begin = begin_of(i / 2);
+    const auto begin_of = [&](std::size_t i) { return i < parts ? count / parts * i : count; };
+    const auto time_of = [&](const auto& way, std::size_t begin) {
+        const auto start = std::chrono::steady_clock::now();
+        way(begin, begin + part, serial_executor());
+        return std::chrono::steady_clock::now() - start;
+    };
+    std::chrono::steady_clock::duration by_first{};
+    std::chrono::steady_clock::duration by_second{};
+    std::array<bool, parts> is_tried{};
+    for (std::size_t k = 0; k < parts; ++k) {
+        // From the middle on: the first rays of a view may all see the sky.
+        const std::size_t i = (parts / 2 + 3 * k) % parts;
+        is_tried[i] = true;
         // The one that comes second may find something in the cache.
-        const bool is_first = (i % 4 == 0) || (i % 4 == 3);
-        const Clock::time_point start = Clock::now();
-        if (is_first)
-            first(begin, begin + part, serial_executor());
-        else
-            second(begin, begin + part, serial_executor());
-        taken[is_first ? 0 : 1] += Clock::now() - start;
+        if (k % 2 != 0) by_first += time_of(first, begin_of(i));
+        by_second += time_of(second, begin_of(i));
+        if (k % 2 == 0) by_first += time_of(first, begin_of(i));
+        if (by_first > 2 * by_second || by_second > 2 * by_first) break;
     }
     for (std::size_t i = 0; i < parts; ++i) {
-        const std::size_t begin = begin_of(i) + part;
-        const std::size_t end = i + 1 < parts ? begin_of(i + 1) : count;
-        if (taken[0] <= taken[1])
-            first(begin, end, executor);
+        const std::size_t begin = begin_of(i) + (is_tried[i] ? part : 0);
+        if (by_first <= by_second)
+            first(begin, begin_of(i + 1), executor);
         else
-            second(begin, end, executor);
+            second(begin, begin_of(i + 1), executor);
     }
 }
 

@@ -345,6 +345,16 @@ private:
     [[nodiscard]] std::optional<Hit> closest_hit_by_trees(const Ray& ray) const;
     [[nodiscard]] bool any_hit_by_trees(const Ray& ray) const;
 
+    template <class Answer, class ByGrid, class ByWhole, class ByTrees>
+    void answer_batch(
+        std::span<const Ray> rays,
+        std::span<Answer> answers,
+        const Executor& executor,
+        const ByGrid& by_grid,
+        const ByWhole& by_whole,
+        const ByTrees& by_trees
+    ) const;
+
     /// Whether the area's pencil holds every ray.
     [[nodiscard]] bool are_exact(std::span<const Ray> rays, const Executor& executor) const;
 

@@ -120,7 +120,7 @@ TEST(Structures, BatchesOfExactRaysEqualSingleQueriesOnAnyNumberOfThreads) {
     for (const AreaHandle handle : {gridded["sun"], gridded["lamp"], drawn["sun"], drawn["lamp"]}) {
         Rng rng(52);
         std::vector<Ray> rays;
-        for (int i = 0; i < 20'000; ++i) {
+        for (int i = 0; i < 40'000; ++i) {
             const Ray ray = pencil_ray(rng, handle.pencil(), scene);
             if (is_valid(ray)) rays.push_back(ray);
         }
