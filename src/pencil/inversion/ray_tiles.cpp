@@ -14,7 +14,6 @@ constexpr std::size_t rays_per_tile = 1024;
 constexpr std::size_t rays_per_bin = 16;
 constexpr std::size_t sample_size = 1024;
 constexpr std::uint32_t no_tile = 0xFFFFFFFU;
-constexpr float infinity = std::numeric_limits<float>::infinity();
 
 /// A ray on its way from the batch to its slot.
 struct SeenRay {
