@@ -1,13 +1,15 @@
 #include <raywise/analysis/comparison.hpp>
 
+#include "analysis/comparison/area_comparison.hpp"
+#include "analysis/comparison/protocol.hpp"
+
+#include <raywise/analysis/statistics.hpp>
+#include <raywise/analysis/stopwatch.hpp>
 #include <raywise/bvh/statistics.hpp>
 #include <raywise/core/error.hpp>
 #include <raywise/core/rng.hpp>
 #include <raywise/toplevel/region_list.hpp>
 #include <raywise/toplevel/region_octree.hpp>
-
-#include <analysis/area_comparison.hpp>
-#include <analysis/paired_timing.hpp>
 
 #include <algorithm>
 #include <array>
