@@ -1,5 +1,5 @@
 // A city: blocks of houses of different heights along a grid of streets.
-#include "mesh_builder.hpp"
+#include "scene/mesh_builder.hpp"
 
 #include <raywise/core/rng.hpp>
 #include <raywise/geometry/frame.hpp>

@@ -1,5 +1,5 @@
 // A forest: trees of trunks, branches and single leaves on uneven ground.
-#include "mesh_builder.hpp"
+#include "scene/mesh_builder.hpp"
 
 #include <raywise/core/rng.hpp>
 #include <raywise/geometry/frame.hpp>
