@@ -5,8 +5,16 @@
 #include "analysis/workload/path_tracer.hpp"
 #include "analysis/workload/place.hpp"
 
+#include <raywise/analysis/exact_oracle.hpp>
+#include <raywise/analysis/ray_class.hpp>
 #include <raywise/core/error.hpp>
+#include <raywise/core/executor.hpp>
+#include <raywise/distribution/influence_area.hpp>
+#include <raywise/distribution/radial.hpp>
 #include <raywise/geometry/frustum.hpp>
+#include <raywise/geometry/ray.hpp>
+#include <raywise/geometry/region.hpp>
+#include <raywise/scene/scene.hpp>
 
 #include <algorithm>
 #include <cstddef>

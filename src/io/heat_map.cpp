@@ -1,13 +1,20 @@
 #include <raywise/io/heat_map.hpp>
 
 #include <raywise/core/error.hpp>
+#include <raywise/io/image.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace raywise {
 

@@ -1,3 +1,4 @@
+#include "io/scene_reader.hpp"
 #include "ply_header.hpp"
 #include "text_lines.hpp"
 #include "text_number.hpp"
@@ -8,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>

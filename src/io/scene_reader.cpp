@@ -2,12 +2,15 @@
 #include "triangulate.hpp"
 
 #include <raywise/core/error.hpp>
+#include <raywise/geometry/vec.hpp>
+#include <raywise/io/load_scene.hpp>
 #include <raywise/scene/scene.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <limits>

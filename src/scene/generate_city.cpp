@@ -7,7 +7,6 @@
 #include <raywise/scene/generate.hpp>
 #include <raywise/scene/scene.hpp>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>

@@ -7,7 +7,6 @@
 #include <raywise/scene/generate.hpp>
 #include <raywise/scene/scene.hpp>
 
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <string>

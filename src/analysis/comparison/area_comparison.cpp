@@ -3,12 +3,21 @@
 #include "analysis/comparison/describe.hpp"
 #include "analysis/comparison/full_run.hpp"
 #include "analysis/comparison/protocol.hpp"
+#include "analysis/comparison/ray_sets.hpp"
+#include "analysis/comparison/tree_run.hpp"
 
+#include <raywise/analysis/comparison.hpp>
 #include <raywise/analysis/statistics.hpp>
+#include <raywise/bvh/bvh.hpp>
+#include <raywise/core/executor.hpp>
+#include <raywise/distribution/distribution.hpp>
+#include <raywise/toplevel/accelerator.hpp>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <numeric>
+#include <vector>
 
 namespace raywise::detail {
 

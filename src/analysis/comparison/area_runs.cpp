@@ -1,7 +1,15 @@
+#include "analysis/comparison/area_comparison.hpp"
 #include "analysis/comparison/area_runs.hpp"
 #include "analysis/comparison/protocol.hpp"
+#include "analysis/comparison/ray_sets.hpp"
+#include "analysis/comparison/tree_run.hpp"
+
+#include <raywise/analysis/statistics.hpp>
+#include <raywise/distribution/influence_area.hpp>
+#include <raywise/toplevel/accelerator.hpp>
 
 #include <cstddef>
+#include <span>
 #include <utility>
 #include <vector>
 

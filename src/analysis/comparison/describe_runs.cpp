@@ -1,6 +1,10 @@
+#include "analysis/comparison/area_runs.hpp"
 #include "analysis/comparison/describe.hpp"
+#include "analysis/comparison/full_run.hpp"
+#include "analysis/comparison/tree_run.hpp"
 
 #include <raywise/analysis/break_even.hpp>
+#include <raywise/analysis/comparison.hpp>
 #include <raywise/analysis/estimated_cost.hpp>
 #include <raywise/analysis/statistics.hpp>
 

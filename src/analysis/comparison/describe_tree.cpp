@@ -1,11 +1,26 @@
+#include "analysis/comparison/area_comparison.hpp"
+#include "analysis/comparison/area_runs.hpp"
 #include "analysis/comparison/describe.hpp"
 #include "analysis/comparison/protocol.hpp"
 
+#include <raywise/analysis/comparison.hpp>
 #include <raywise/analysis/end_point_overlap.hpp>
 #include <raywise/analysis/estimated_cost.hpp>
+#include <raywise/analysis/memory.hpp>
 #include <raywise/analysis/overlap.hpp>
+#include <raywise/analysis/statistics.hpp>
 #include <raywise/analysis/stopwatch.hpp>
+#include <raywise/bvh/bvh.hpp>
+#include <raywise/bvh/cost_constants.hpp>
 #include <raywise/bvh/statistics.hpp>
+#include <raywise/core/ids.hpp>
+#include <raywise/distribution/distribution.hpp>
+#include <raywise/distribution/radial.hpp>
+#include <raywise/distribution/ray_distribution.hpp>
+#include <raywise/geometry/hit_measure.hpp>
+#include <raywise/geometry/triangle_view.hpp>
+#include <raywise/toplevel/accelerator.hpp>
+#include <raywise/toplevel/build_tree.hpp>
 #include <raywise/toplevel/membership.hpp>
 
 #include <algorithm>

@@ -1,10 +1,20 @@
 #include "analysis/comparison/full_run.hpp"
+#include "analysis/comparison/ray_sets.hpp"
+#include "analysis/comparison/tree_run.hpp"
 
+#include <raywise/bvh/cost_constants.hpp>
+#include <raywise/core/executor.hpp>
+#include <raywise/geometry/ray.hpp>
+#include <raywise/toplevel/accelerator.hpp>
 #include <raywise/toplevel/served.hpp>
+#include <raywise/trace/any_hit.hpp>
+#include <raywise/trace/observer.hpp>
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 namespace raywise::detail {
 

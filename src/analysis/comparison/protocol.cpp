@@ -1,6 +1,15 @@
 #include "analysis/comparison/protocol.hpp"
 
-#include <utility>
+#include <raywise/analysis/comparison.hpp>
+#include <raywise/distribution/influence_area.hpp>
+#include <raywise/distribution/radial.hpp>
+#include <raywise/distribution/ray_distribution.hpp>
+#include <raywise/toplevel/accelerator.hpp>
+#include <raywise/toplevel/build_tree.hpp>
+#include <raywise/toplevel/membership.hpp>
+#include <raywise/toplevel/region_index.hpp>
+#include <raywise/toplevel/region_octree.hpp>
+
 #include <variant>
 
 namespace raywise {

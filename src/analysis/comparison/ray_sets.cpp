@@ -1,6 +1,14 @@
 #include "analysis/comparison/ray_sets.hpp"
 
+#include <raywise/analysis/comparison.hpp>
+#include <raywise/core/executor.hpp>
 #include <raywise/core/rng.hpp>
+#include <raywise/distribution/distribution.hpp>
+#include <raywise/geometry/ray.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
 
 namespace raywise::detail {
 

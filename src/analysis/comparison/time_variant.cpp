@@ -1,8 +1,13 @@
+#include "analysis/comparison/area_runs.hpp"
 #include "analysis/comparison/describe.hpp"
 #include "analysis/comparison/paired_timing.hpp"
 
 #include <raywise/analysis/break_even.hpp>
+#include <raywise/analysis/comparison.hpp>
 #include <raywise/analysis/statistics.hpp>
+#include <raywise/geometry/ray.hpp>
+#include <raywise/toplevel/accelerator.hpp>
+#include <raywise/toplevel/traced_tree.hpp>
 #include <raywise/trace/closest_hit.hpp>
 
 #include <algorithm>

@@ -1,11 +1,20 @@
+#include "analysis/comparison/ray_sets.hpp"
 #include "analysis/comparison/tree_run.hpp"
 
 #include <raywise/analysis/real_cost.hpp>
+#include <raywise/bvh/cost_constants.hpp>
+#include <raywise/core/executor.hpp>
+#include <raywise/geometry/ray.hpp>
+#include <raywise/geometry/triangle_view.hpp>
+#include <raywise/toplevel/traced_tree.hpp>
 #include <raywise/trace/brute_force.hpp>
+#include <raywise/trace/observer.hpp>
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
+#include <vector>
 
 namespace raywise::detail {
 

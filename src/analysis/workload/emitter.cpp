@@ -1,12 +1,22 @@
 #include "analysis/workload/emitter.hpp"
+#include "analysis/workload/path_tracer.hpp"
+#include "analysis/workload/place.hpp"
 
+#include <raywise/analysis/ray_class.hpp>
 #include <raywise/core/rng.hpp>
-#include <raywise/geometry/obb.hpp>
+#include <raywise/distribution/influence_area.hpp>
+#include <raywise/distribution/radial.hpp>
+#include <raywise/geometry/frame.hpp>
+#include <raywise/geometry/ray.hpp>
 #include <raywise/geometry/sampling.hpp>
+#include <raywise/geometry/vec.hpp>
 #include <raywise/toplevel/pencil_of.hpp>
 
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <numbers>
+#include <string>
 #include <variant>
 
 namespace raywise::workload_detail {

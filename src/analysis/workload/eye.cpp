@@ -1,6 +1,14 @@
 #include "analysis/workload/eye.hpp"
+#include "analysis/workload/place.hpp"
+
+#include <raywise/core/rng.hpp>
+#include <raywise/geometry/frame.hpp>
+#include <raywise/geometry/frustum.hpp>
+#include <raywise/geometry/vec.hpp>
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <numbers>
 
 namespace raywise::workload_detail {

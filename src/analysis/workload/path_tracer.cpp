@@ -1,9 +1,21 @@
+#include "analysis/workload/eye.hpp"
 #include "analysis/workload/path_tracer.hpp"
+#include "analysis/workload/place.hpp"
 
+#include <raywise/core/executor.hpp>
+#include <raywise/core/ids.hpp>
+#include <raywise/core/rng.hpp>
+#include <raywise/geometry/ray.hpp>
 #include <raywise/geometry/sampling.hpp>
+#include <raywise/geometry/triangle.hpp>
+#include <raywise/geometry/vec.hpp>
+#include <raywise/scene/scene.hpp>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <span>
+#include <vector>
 
 namespace raywise::workload_detail {
 

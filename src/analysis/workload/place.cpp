@@ -1,10 +1,18 @@
 #include "analysis/workload/place.hpp"
 
+#include <raywise/analysis/ray_workload.hpp>
 #include <raywise/core/error.hpp>
+#include <raywise/core/rng.hpp>
+#include <raywise/geometry/aabb.hpp>
+#include <raywise/geometry/frame.hpp>
+#include <raywise/geometry/vec.hpp>
+#include <raywise/scene/scene.hpp>
 #include <raywise/toplevel/open_place.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <numbers>
 
 namespace raywise::workload_detail {

@@ -1,13 +1,19 @@
 #include "pencil/inversion/answers.hpp"
 #include "pencil/inversion/extremes.hpp"
+#include "pencil/inversion/face.hpp"
+#include "pencil/inversion/raster.hpp"
+#include "pencil/inversion/ray_tiles.hpp"
 #include "pencil/inversion/tile_lock.hpp"
 
+#include <raywise/core/ids.hpp>
 #include <raywise/geometry/ray.hpp>
 #include <raywise/geometry/ray_triangle.hpp>
 #include <raywise/geometry/triangle.hpp>
 #include <raywise/pencil/pencil.hpp>
 
+#include <atomic>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 

@@ -1,15 +1,8 @@
 // Triangles drawn over rays, several rays per operation. After [Aila04], [Johnson05]. Compiled once
 // for each instruction set.
-#include "pencil/inversion/answers.hpp"
-#include "pencil/inversion/drawn.hpp"
-#include "pencil/inversion/edges.hpp"
 #include "pencil/inversion/raster.hpp"
-#include "pencil/inversion/ray_tiles.hpp"
-#include "pencil/inversion/tile_lock.hpp"
-#include "pencil/inversion/visible.hpp"
 
 #include <raywise/core/ids.hpp>
-#include <raywise/geometry/ray_triangle.hpp>
 #include <raywise/pencil/pencil.hpp>
 
 #include <cstddef>

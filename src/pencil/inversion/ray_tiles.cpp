@@ -1,10 +1,22 @@
+#include "pencil/inversion/extremes.hpp"
+#include "pencil/inversion/face.hpp"
 #include "pencil/inversion/ray_tiles.hpp"
 
 #include <raywise/core/error.hpp>
+#include <raywise/core/executor.hpp>
+#include <raywise/core/ids.hpp>
+#include <raywise/core/large_buffer.hpp>
+#include <raywise/geometry/ray.hpp>
+#include <raywise/geometry/vec.hpp>
+#include <raywise/pencil/pencil.hpp>
 
-#include <array>
+#include <algorithm>
+#include <atomic>
 #include <cmath>
-#include <memory>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
 
 namespace raywise::detail {
 

@@ -1,4 +1,8 @@
 #include "scene/courtyard/parts.hpp"
+#include "scene/courtyard/plan.hpp"
+#include "scene/mesh_builder.hpp"
+
+#include <raywise/geometry/vec.hpp>
 
 #include <algorithm>
 #include <array>

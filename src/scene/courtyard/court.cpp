@@ -1,10 +1,14 @@
 // What stands in the open court, and the ground under it.
 #include "scene/courtyard/parts.hpp"
+#include "scene/courtyard/plan.hpp"
+#include "scene/mesh_builder.hpp"
 
 #include <raywise/core/rng.hpp>
+#include <raywise/geometry/vec.hpp>
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <vector>
 
 namespace raywise::courtyard {

@@ -1,9 +1,12 @@
 // What encloses the galleries.
 #include "scene/courtyard/parts.hpp"
+#include "scene/courtyard/plan.hpp"
+#include "scene/mesh_builder.hpp"
 
 #include <raywise/core/rng.hpp>
 
 #include <algorithm>
+#include <cstdint>
 
 namespace raywise::courtyard {
 

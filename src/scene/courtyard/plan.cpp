@@ -1,6 +1,10 @@
 #include "scene/courtyard/plan.hpp"
+#include "scene/mesh_builder.hpp"
+
+#include <raywise/geometry/vec.hpp>
 
 #include <cmath>
+#include <vector>
 
 namespace raywise::courtyard {
 
