@@ -99,7 +99,8 @@ void add_house(MeshBuilder& mesh, double x, double z, Rng& rng) {
 
 /// Where a lot begins on one axis: every `lots` lots a street.
 double lot_start(int index) {
-    return index * lot + (index / lots + 1) * street;
+    const int streets = index / lots + 1;
+    return index * lot + streets * street;
 }
 
 /// Houses fill the square of lots row by row; the last row may stay incomplete.

@@ -171,7 +171,7 @@ private:
         for_each_run(
             shot,
             [&](std::uint32_t row, std::uint32_t first, std::uint32_t last) HWY_ATTR {
-                const std::uint32_t* const row_starts = starts + row * tile.columns;
+                const std::uint32_t* const row_starts = starts + std::size_t{row} * tile.columns;
                 draw_run(tile.first + row_starts[first], tile.first + row_starts[last + 1]);
             }
         );
