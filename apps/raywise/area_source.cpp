@@ -1,12 +1,19 @@
 #include "area_source.hpp"
 #include "exit_code.hpp"
+#include "session.hpp"
 
 #include <raywise/core/nearest_word.hpp>
+#include <raywise/distribution/influence_area.hpp>
 #include <raywise/io/area_file.hpp>
+#include <raywise/scene/scene.hpp>
 #include <raywise/toplevel/propose_areas.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
 
 namespace raywise::app {
 

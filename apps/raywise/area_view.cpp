@@ -1,8 +1,18 @@
 #include "area_view.hpp"
 
+#include <raywise/distribution/influence_area.hpp>
+#include <raywise/distribution/parallel.hpp>
+#include <raywise/distribution/radial.hpp>
+#include <raywise/geometry/frame.hpp>
+#include <raywise/geometry/ray.hpp>
+#include <raywise/geometry/vec.hpp>
+
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
+#include <optional>
+#include <variant>
 
 namespace raywise::app {
 

@@ -1,6 +1,8 @@
 // raywise bench: rays per second beside Embree, same rays, verified answers.
 #include "bench/chart.hpp"
+#include "bench/class_bench.hpp"
 #include "bench/report.hpp"
+#include "bench/rows.hpp"
 #include "bench/scaling.hpp"
 #include "bench/scene_bench.hpp"
 #include "exit_code.hpp"
@@ -9,15 +11,26 @@
 #include "scene_source.hpp"
 #include "session.hpp"
 
+#include <raywise/analysis/ray_class.hpp>
 #include <raywise/core/nearest_word.hpp>
+#include <raywise/core/progress.hpp>
 #include <raywise/core/rng.hpp>
+#include <raywise/io/report.hpp>
+#include <raywise/scene/scene.hpp>
+#include <raywise/toplevel/structure_choice.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace raywise::app {
 

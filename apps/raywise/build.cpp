@@ -7,16 +7,29 @@
 
 #include <raywise/analysis/estimated_cost.hpp>
 #include <raywise/analysis/stopwatch.hpp>
+#include <raywise/bvh/bvh.hpp>
 #include <raywise/bvh/statistics.hpp>
 #include <raywise/bvh/validate.hpp>
+#include <raywise/core/executor.hpp>
+#include <raywise/core/progress.hpp>
+#include <raywise/distribution/distribution.hpp>
+#include <raywise/distribution/influence_area.hpp>
+#include <raywise/geometry/hit_measure.hpp>
+#include <raywise/io/report.hpp>
 #include <raywise/io/tree_file.hpp>
+#include <raywise/scene/scene.hpp>
+#include <raywise/toplevel/build_tree.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
+#include <variant>
+#include <vector>
 
 namespace raywise::app {
 
@@ -43,6 +56,7 @@ choose_area(const BuildOptions& options, const Scene& scene, const Session& sess
     if (!options.area.empty()) return find_area(areas, options.area);
     if (areas.size() == 1) return areas.front();
     std::vector<std::string> names;
+    names.reserve(areas.size());
     for (const InfluenceArea& area : areas)
         names.push_back(area.name);
     throw UsageError(fmt::format("--area is needed, one of: {}", fmt::join(names, ", ")));

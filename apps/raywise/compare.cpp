@@ -7,14 +7,23 @@
 #include "session.hpp"
 
 #include <raywise/analysis/comparison.hpp>
-#include <raywise/core/error.hpp>
+#include <raywise/core/executor.hpp>
 #include <raywise/core/nearest_word.hpp>
+#include <raywise/core/progress.hpp>
+#include <raywise/distribution/influence_area.hpp>
+#include <raywise/io/report.hpp>
+#include <raywise/scene/scene.hpp>
+#include <raywise/toplevel/build_tree.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <sstream>
+#include <string>
+#include <vector>
 
 namespace raywise::app {
 
@@ -53,6 +62,7 @@ std::vector<Variant> known_variants() {
 std::vector<Variant> parse_pairs(const std::string& text) {
     const std::vector<Variant> known = known_variants();
     std::vector<std::string> names;
+    names.reserve(known.size());
     for (const Variant variant : known)
         names.push_back(name_of(variant));
     std::vector<Variant> pairs;

@@ -1,8 +1,18 @@
 #include "comparison_report.hpp"
 
+#include <raywise/analysis/comparison.hpp>
+#include <raywise/analysis/statistics.hpp>
+#include <raywise/io/report.hpp>
+
 #include <fmt/format.h>
 
+#include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace raywise::app {
 
@@ -198,6 +208,7 @@ std::string verified_text(const Comparison& comparison) {
 
 std::vector<std::string> findings_of(const Comparison& comparison) {
     std::vector<std::string> findings;
+    findings.reserve(comparison.areas.size());
     for (std::size_t i = 0; i < comparison.areas.size(); ++i)
         findings.push_back(comparison.areas[i].name + ": " + verdict_text(comparison, i) + ".");
     if (comparison.areas.size() > 1)

@@ -4,10 +4,12 @@
 #include "session.hpp"
 
 #include <raywise/io/save_scene.hpp>
+#include <raywise/scene/scene.hpp>
 
 #include <fmt/format.h>
 
 #include <memory>
+#include <string>
 
 namespace raywise::app {
 

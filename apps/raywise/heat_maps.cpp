@@ -1,17 +1,33 @@
 #include "area_view.hpp"
 #include "heat_maps.hpp"
 
+#include <raywise/analysis/comparison.hpp>
 #include <raywise/analysis/real_cost.hpp>
+#include <raywise/bvh/bvh.hpp>
+#include <raywise/bvh/cost_constants.hpp>
 #include <raywise/core/error.hpp>
+#include <raywise/core/executor.hpp>
+#include <raywise/core/ids.hpp>
+#include <raywise/core/progress.hpp>
+#include <raywise/distribution/influence_area.hpp>
 #include <raywise/io/heat_map.hpp>
 #include <raywise/io/png.hpp>
+#include <raywise/scene/scene.hpp>
+#include <raywise/toplevel/build_tree.hpp>
 #include <raywise/toplevel/membership.hpp>
+#include <raywise/trace/observer.hpp>
 #include <raywise/trace/triangles.hpp>
 
+#include <fmt/format.h>
+
 #include <cctype>
+#include <cstdint>
 #include <filesystem>
 #include <set>
+#include <span>
+#include <string>
 #include <system_error>
+#include <vector>
 
 namespace raywise::app {
 
@@ -100,7 +116,7 @@ std::vector<NamedImage> draw_heat_maps(
         for (HeatMap& map : maps) {
             const std::string pair = file_name(map.title);
             map.title = area.name + ": " + map.title;
-            images.push_back({name + "-" + pair, draw(map, scale, 2)});
+            images.push_back({fmt::format("{}-{}", name, pair), draw(map, scale, 2)});
         }
     }
     return images;

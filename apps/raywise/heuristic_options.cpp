@@ -1,6 +1,9 @@
 #include "heuristic_options.hpp"
 
+#include <raywise/toplevel/build_tree.hpp>
+
 #include <map>
+#include <string>
 
 namespace raywise::app {
 

@@ -3,8 +3,12 @@
 #include "session.hpp"
 
 #include <raywise/core/hash.hpp>
+#include <raywise/geometry/aabb.hpp>
+#include <raywise/io/report.hpp>
+#include <raywise/scene/scene.hpp>
 
 #include <memory>
+#include <string>
 
 namespace raywise::app {
 
@@ -18,6 +22,7 @@ Report describe(const Scene& scene, const std::string& title) {
     add_count(table, "triangles", scene.triangles.size());
     add_count(table, "vertices", scene.vertices.size());
     add_count(table, "degenerate_triangles", count_degenerate(scene));
+    add_count(table, "duplicate_triangles", count_duplicates(scene));
     add_count(table, "groups", scene.groups.size());
     add_count(table, "lights", scene.lights.size());
     add_count(table, "cameras", scene.cameras.size());

@@ -17,7 +17,9 @@
 #include <algorithm>
 #include <exception>
 #include <new>
+#include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace raywise::app {
@@ -45,6 +47,7 @@ std::string command_line(const std::vector<std::string>& arguments) {
 
 std::vector<std::string> names_of(const std::vector<Command>& commands) {
     std::vector<std::string> names;
+    names.reserve(commands.size());
     for (const Command& command : commands)
         names.push_back(command.app->get_name());
     return names;

@@ -1,18 +1,23 @@
 #include "exit_code.hpp"
 #include "scene_source.hpp"
+#include "session.hpp"
 
 #include <raywise/core/error.hpp>
 #include <raywise/core/nearest_word.hpp>
 #include <raywise/io/load_scene.hpp>
 #include <raywise/scene/generate.hpp>
+#include <raywise/scene/scene.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <string>
 #include <system_error>
 #include <vector>
 
@@ -70,7 +75,7 @@ Scene generate(const std::string& recipe, std::uint64_t seed) {
 }
 
 bool is_recipe(const std::string& argument) {
-    return generators().count(argument.substr(0, argument.find(':'))) > 0;
+    return generators().contains(argument.substr(0, argument.find(':')));
 }
 
 bool has_scene_suffix(const std::filesystem::path& path) {

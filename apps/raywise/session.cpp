@@ -1,8 +1,15 @@
+#include "console.hpp"
 #include "output.hpp"
 #include "session.hpp"
 #include "version.hpp"
 
+#include <raywise/core/function_ref.hpp>
+#include <raywise/core/progress.hpp>
+#include <raywise/io/report.hpp>
+
+#include <cstdint>
 #include <limits>
+#include <string_view>
 
 namespace raywise::app {
 

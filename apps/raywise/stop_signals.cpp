@@ -1,3 +1,4 @@
+#include "console.hpp"
 #include "stop_signals.hpp"
 
 #include <raywise/core/progress.hpp>
@@ -8,6 +9,7 @@
 #include <cerrno>
 #include <csignal>
 #include <ctime>
+#include <mutex>
 
 namespace raywise::app {
 

@@ -7,16 +7,32 @@
 
 #include <raywise/analysis/stopwatch.hpp>
 #include <raywise/bvh/validate.hpp>
+#include <raywise/core/error.hpp>
+#include <raywise/core/progress.hpp>
 #include <raywise/core/rng.hpp>
+#include <raywise/distribution/distribution.hpp>
+#include <raywise/distribution/influence_area.hpp>
+#include <raywise/geometry/ray.hpp>
 #include <raywise/io/occlusion_file.hpp>
 #include <raywise/io/ray_file.hpp>
+#include <raywise/io/report.hpp>
 #include <raywise/io/tree_file.hpp>
+#include <raywise/scene/scene.hpp>
+#include <raywise/toplevel/accelerator.hpp>
 #include <raywise/trace/brute_force.hpp>
+#include <raywise/trace/triangles.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace raywise::app {
 

@@ -1,9 +1,19 @@
 #include "tracer.hpp"
 
+#include <raywise/core/executor.hpp>
+#include <raywise/core/progress.hpp>
+#include <raywise/geometry/ray.hpp>
+#include <raywise/toplevel/accelerator.hpp>
 #include <raywise/trace/any_hit.hpp>
 #include <raywise/trace/closest_hit.hpp>
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <variant>
+#include <vector>
 
 namespace raywise::app {
 

@@ -10,6 +10,7 @@
 #include <raywise/analysis/memory.hpp>                // IWYU pragma: export
 #include <raywise/analysis/memory_speed.hpp>          // IWYU pragma: export
 #include <raywise/analysis/overlap.hpp>               // IWYU pragma: export
+#include <raywise/analysis/ray_class.hpp>             // IWYU pragma: export
 #include <raywise/analysis/ray_order.hpp>             // IWYU pragma: export
 #include <raywise/analysis/ray_workload.hpp>          // IWYU pragma: export
 #include <raywise/analysis/real_cost.hpp>             // IWYU pragma: export

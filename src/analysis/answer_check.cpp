@@ -1,12 +1,20 @@
 #include <raywise/analysis/answer_check.hpp>
 
+#include <raywise/analysis/exact_oracle.hpp>
 #include <raywise/core/error.hpp>
+#include <raywise/core/executor.hpp>
+#include <raywise/core/ids.hpp>
+#include <raywise/geometry/ray.hpp>
+#include <raywise/geometry/triangle_view.hpp>
+#include <raywise/geometry/vec.hpp>
 #include <raywise/trace/brute_force.hpp>
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstddef>
 #include <optional>
+#include <span>
 
 namespace raywise {
 

@@ -1,5 +1,7 @@
 #include <raywise/analysis/break_even.hpp>
 
+#include <optional>
+
 namespace raywise {
 
 std::optional<double> break_even_hit_fraction(const TwoLevelCosts& costs) {

@@ -1,18 +1,36 @@
 #include <raywise/analysis/comparison.hpp>
 
+#include "analysis/comparison/area_comparison.hpp"
+#include "analysis/comparison/protocol.hpp"
+
+#include <raywise/analysis/memory.hpp>
+#include <raywise/analysis/statistics.hpp>
+#include <raywise/analysis/stopwatch.hpp>
+#include <raywise/bvh/bvh.hpp>
 #include <raywise/bvh/statistics.hpp>
 #include <raywise/core/error.hpp>
+#include <raywise/core/executor.hpp>
+#include <raywise/core/progress.hpp>
 #include <raywise/core/rng.hpp>
+#include <raywise/distribution/distribution.hpp>
+#include <raywise/distribution/influence_area.hpp>
+#include <raywise/geometry/region.hpp>
+#include <raywise/geometry/triangle.hpp>
+#include <raywise/geometry/vec.hpp>
+#include <raywise/scene/scene.hpp>
+#include <raywise/toplevel/area_id.hpp>
+#include <raywise/toplevel/build_tree.hpp>
 #include <raywise/toplevel/region_list.hpp>
 #include <raywise/toplevel/region_octree.hpp>
-
-#include <analysis/area_comparison.hpp>
-#include <analysis/paired_timing.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace raywise {
 

@@ -1,8 +1,20 @@
 #include <raywise/analysis/end_point_overlap.hpp>
 
+#include <raywise/bvh/bvh.hpp>
+#include <raywise/bvh/cost_constants.hpp>
+#include <raywise/core/executor.hpp>
+#include <raywise/core/function_ref.hpp>
+#include <raywise/core/ids.hpp>
+#include <raywise/geometry/aabb.hpp>
+#include <raywise/geometry/triangle.hpp>
+#include <raywise/geometry/triangle_view.hpp>
+#include <raywise/geometry/vec.hpp>
+
 #include <algorithm>
-#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <span>
+#include <utility>
 #include <vector>
 
 namespace raywise {

@@ -1,8 +1,14 @@
 #include <raywise/analysis/exact_oracle.hpp>
 
+#include <raywise/core/executor.hpp>
+#include <raywise/geometry/ray.hpp>
+#include <raywise/geometry/triangle_view.hpp>
 #include <raywise/toplevel/build_tree.hpp>
 #include <raywise/trace/any_hit.hpp>
 #include <raywise/trace/closest_hit.hpp>
+
+#include <optional>
+#include <span>
 
 namespace raywise {
 

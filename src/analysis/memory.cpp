@@ -1,5 +1,8 @@
 #include <raywise/analysis/memory.hpp>
 
+#include <raywise/bvh/bvh.hpp>
+#include <raywise/core/ids.hpp>
+
 namespace raywise {
 
 MemoryUse& MemoryUse::operator+=(const MemoryUse& other) {

@@ -5,6 +5,8 @@
 #include <raywise/core/rng.hpp>
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <numeric>
 #include <utility>

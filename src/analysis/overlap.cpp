@@ -1,8 +1,26 @@
 #include <raywise/analysis/overlap.hpp>
 
+#include <raywise/bvh/bvh.hpp>
+#include <raywise/bvh/walk.hpp>
+#include <raywise/core/executor.hpp>
+#include <raywise/core/ids.hpp>
+#include <raywise/distribution/distribution.hpp>
+#include <raywise/distribution/parallel.hpp>
+#include <raywise/distribution/radial.hpp>
+#include <raywise/distribution/ray_distribution.hpp>
+#include <raywise/geometry/aabb.hpp>
+#include <raywise/geometry/ray.hpp>
 #include <raywise/geometry/ray_box.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cassert>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <variant>
+#include <vector>
 
 namespace raywise {
 

@@ -3,13 +3,19 @@
 #include <raywise/core/error.hpp>
 #include <raywise/geometry/aabb.hpp>
 #include <raywise/geometry/frame.hpp>
+#include <raywise/geometry/ray.hpp>
+#include <raywise/geometry/vec.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <span>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 namespace raywise {
 

@@ -1,6 +1,16 @@
 #include <raywise/analysis/real_cost.hpp>
 
+#include <raywise/analysis/statistics.hpp>
+#include <raywise/bvh/bvh.hpp>
+#include <raywise/bvh/cost_constants.hpp>
+#include <raywise/core/executor.hpp>
+#include <raywise/geometry/ray.hpp>
 #include <raywise/trace/count_unpruned.hpp>
+#include <raywise/trace/observer.hpp>
+
+#include <cstddef>
+#include <span>
+#include <vector>
 
 namespace raywise {
 

@@ -3,7 +3,9 @@
 #include <raywise/analysis/statistics.hpp>
 #include <raywise/analysis/stopwatch.hpp>
 #include <raywise/core/error.hpp>
+#include <raywise/core/function_ref.hpp>
 
+#include <span>
 #include <vector>
 
 namespace raywise {

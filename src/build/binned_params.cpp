@@ -1,6 +1,7 @@
 #include <raywise/build/binned_params.hpp>
 
 #include <raywise/build/bins.hpp>
+#include <raywise/bvh/bvh.hpp>
 #include <raywise/core/error.hpp>
 
 #include <cmath>

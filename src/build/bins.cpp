@@ -1,7 +1,12 @@
 #include <raywise/build/bins.hpp>
 
+#include <raywise/build/prim_box.hpp>
+#include <raywise/build/quad.hpp>
 #include <raywise/build/split.hpp>
+#include <raywise/core/executor.hpp>
 
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <mutex>
 
@@ -20,6 +25,7 @@ BinGrid::BinGrid(const QuadBox& centroids, int bin_count)
             scale_[axis] = static_cast<float>(bin_count) / extent[axis];
 }
 
+// NOLINTNEXTLINE(*-member-init): of the arrays, only what is used is written
 Bins::Bins(int bin_count) : bin_count_(bin_count) {
     for (std::size_t i = 0; i < at(bin_count, 0); ++i) {
         counts_[i] = 0;

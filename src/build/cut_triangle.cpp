@@ -1,5 +1,8 @@
 #include <raywise/build/cut_triangle.hpp>
 
+#include <raywise/build/prim_box.hpp>
+#include <raywise/build/quad.hpp>
+
 #include <cstddef>
 
 namespace raywise {

@@ -1,6 +1,13 @@
 #include <raywise/build/plane_scan.hpp>
 
+#include <raywise/core/ids.hpp>
+#include <raywise/geometry/aabb.hpp>
+#include <raywise/geometry/vec.hpp>
+
 #include <algorithm>
+#include <cstddef>
+#include <span>
+#include <vector>
 
 namespace raywise {
 

@@ -1,11 +1,19 @@
 #include <raywise/build/prim_box.hpp>
 
+#include <raywise/build/quad.hpp>
 #include <raywise/build/split.hpp>
 #include <raywise/core/error.hpp>
+#include <raywise/core/executor.hpp>
+#include <raywise/core/large_buffer.hpp>
+#include <raywise/geometry/aabb.hpp>
+#include <raywise/geometry/vec.hpp>
 
 #include <atomic>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <span>
 #include <string>
 
 namespace raywise {

@@ -1,11 +1,17 @@
 #include <raywise/build/slot_ranks.hpp>
 
 #include <raywise/build/split.hpp>
+#include <raywise/bvh/bvh.hpp>
+#include <raywise/core/executor.hpp>
+#include <raywise/core/ids.hpp>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <utility>
+#include <vector>
 
 namespace raywise {
 

@@ -1,7 +1,15 @@
 #include <raywise/build/spatial_bins.hpp>
 
 #include <raywise/build/cut_triangle.hpp>
+#include <raywise/build/prim_box.hpp>
+#include <raywise/build/quad.hpp>
+#include <raywise/build/split.hpp>
+#include <raywise/core/executor.hpp>
+#include <raywise/geometry/aabb.hpp>
+#include <raywise/geometry/triangle_view.hpp>
+#include <raywise/geometry/vec.hpp>
 
+#include <cstddef>
 #include <memory>
 #include <mutex>
 

@@ -1,5 +1,6 @@
 #include <raywise/build/spatial_params.hpp>
 
+#include <raywise/build/binned_params.hpp>
 #include <raywise/build/spatial_bins.hpp>
 #include <raywise/core/error.hpp>
 

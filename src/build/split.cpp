@@ -1,6 +1,12 @@
 #include <raywise/build/split.hpp>
 
+#include <raywise/build/prim_box.hpp>
+#include <raywise/build/quad.hpp>
+#include <raywise/core/executor.hpp>
+#include <raywise/core/ids.hpp>
+
 #include <algorithm>
+#include <cstddef>
 #include <mutex>
 #include <utility>
 #include <vector>

@@ -1,6 +1,12 @@
 #include <raywise/build/tree_assembly.hpp>
 
+#include <raywise/bvh/bvh.hpp>
+#include <raywise/core/executor.hpp>
+#include <raywise/core/ids.hpp>
+
 #include <algorithm>
+#include <cstddef>
+#include <vector>
 
 namespace raywise {
 

@@ -4,6 +4,7 @@
 #include <raywise/core/executor.hpp>
 #include <raywise/core/ids.hpp>
 #include <raywise/geometry/triangle.hpp>
+#include <raywise/geometry/triangle_copy.hpp>
 #include <raywise/geometry/triangle_view.hpp>
 #include <raywise/geometry/vec.hpp>
 

@@ -1,6 +1,11 @@
 #include <raywise/bvh/refit.hpp>
 
+#include <raywise/bvh/bvh.hpp>
+#include <raywise/core/ids.hpp>
+#include <raywise/geometry/aabb.hpp>
+
 #include <cstddef>
+#include <span>
 
 namespace raywise {
 

@@ -1,6 +1,11 @@
 #include <raywise/bvh/remap.hpp>
 
+#include <raywise/bvh/bvh.hpp>
+#include <raywise/bvh/wide_bvh.hpp>
 #include <raywise/core/error.hpp>
+#include <raywise/core/ids.hpp>
+
+#include <span>
 
 namespace raywise {
 namespace {

@@ -1,8 +1,11 @@
 #include <raywise/bvh/statistics.hpp>
 
+#include <raywise/bvh/bvh.hpp>
 #include <raywise/bvh/walk.hpp>
+#include <raywise/core/ids.hpp>
 
 #include <algorithm>
+#include <cstddef>
 
 namespace raywise {
 

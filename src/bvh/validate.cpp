@@ -1,9 +1,16 @@
 #include <raywise/bvh/validate.hpp>
 
+#include <raywise/bvh/bvh.hpp>
 #include <raywise/core/error.hpp>
+#include <raywise/core/ids.hpp>
+#include <raywise/geometry/aabb.hpp>
+#include <raywise/geometry/vec.hpp>
 
+#include <cstddef>
 #include <cstdint>
-#include <utility>
+#include <optional>
+#include <span>
+#include <string>
 #include <vector>
 
 namespace raywise {

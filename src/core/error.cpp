@@ -1,7 +1,7 @@
 #include <raywise/core/error.hpp>
 
-#include <algorithm>
-#include <array>
+#include <cstddef>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 

@@ -3,6 +3,7 @@
 #include "core/handover.hpp"
 
 #include <raywise/core/error.hpp>
+#include <raywise/core/function_ref.hpp>
 
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>

@@ -1,6 +1,11 @@
 #include <raywise/core/nearest_word.hpp>
 
 #include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 namespace raywise {

@@ -3,10 +3,19 @@
 #include "distribution/angles.hpp"
 
 #include <raywise/core/error.hpp>
+#include <raywise/distribution/distribution.hpp>
+#include <raywise/distribution/influence_area.hpp>
+#include <raywise/distribution/parallel.hpp>
+#include <raywise/distribution/radial.hpp>
+#include <raywise/geometry/frame.hpp>
+#include <raywise/geometry/vec.hpp>
 
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 #include <string>
+#include <variant>
+#include <vector>
 
 namespace raywise {
 namespace {

@@ -1,6 +1,20 @@
 #include <raywise/distribution/distribution.hpp>
 
+#include <raywise/core/rng.hpp>
+#include <raywise/distribution/any_measure.hpp>
+#include <raywise/distribution/measured.hpp>
+#include <raywise/distribution/parallel.hpp>
+#include <raywise/distribution/radial.hpp>
+#include <raywise/distribution/ray_distribution.hpp>
+#include <raywise/distribution/uniform.hpp>
+#include <raywise/geometry/aabb.hpp>
+#include <raywise/geometry/hit_measure.hpp>
+#include <raywise/geometry/ray.hpp>
+#include <raywise/geometry/vec.hpp>
+
+#include <string_view>
 #include <type_traits>
+#include <variant>
 
 namespace raywise {
 

@@ -3,14 +3,30 @@
 #include "distribution/angles.hpp"
 #include "distribution/checks.hpp"
 
+#include <raywise/core/error.hpp>
 #include <raywise/core/rounding.hpp>
+#include <raywise/distribution/measured.hpp>
+#include <raywise/distribution/parallel.hpp>
+#include <raywise/distribution/radial.hpp>
+#include <raywise/geometry/aabb.hpp>
+#include <raywise/geometry/frame.hpp>
+#include <raywise/geometry/frustum.hpp>
+#include <raywise/geometry/obb.hpp>
+#include <raywise/geometry/ray.hpp>
+#include <raywise/geometry/region.hpp>
+#include <raywise/geometry/vec.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <optional>
 #include <span>
+#include <string>
 #include <utility>
+#include <variant>
+#include <vector>
 
 namespace raywise {
 
@@ -134,7 +150,8 @@ ParallelParams window_over(const Region& region, Vec3d direction, double cone_ha
 /// The frame and window in which the region appears from the apex; no window when it reaches around
 /// the apex (beyond 89 degrees off the direction to its middle).
 std::pair<Frame, std::optional<RadialWindow>> window_from(const Region& region, Vec3d apex) {
-    if (const auto* frustum = std::get_if<Frustum>(&region); frustum && frustum->eye == apex)
+    if (const auto* frustum = std::get_if<Frustum>(&region);
+        frustum != nullptr && frustum->eye == apex)
         return {frustum->frame, RadialWindow{frustum->tan_x, frustum->tan_y}};
     const auto vertices = vertices_of(region);
     Vec3d middle;

@@ -2,14 +2,21 @@
 
 #include "distribution/checks.hpp"
 
+#include <raywise/core/rng.hpp>
 #include <raywise/distribution/uniform.hpp>
+#include <raywise/geometry/aabb.hpp>
+#include <raywise/geometry/ray.hpp>
 #include <raywise/geometry/ray_box.hpp>
+#include <raywise/geometry/vec.hpp>
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <memory>
 #include <numeric>
 #include <utility>
+#include <vector>
 
 namespace raywise {
 
@@ -46,7 +53,7 @@ std::shared_ptr<const RayRecord> record_of(MeasuredParams params) {
     std::iota(all->begin(), all->end(), 0U);
     return std::make_shared<const RayRecord>(RayRecord{
         .params = std::move(params),
-        .uniform = std::move(uniform),
+        .uniform = uniform,
         .total = total,
         .cumulative = std::move(cumulative),
         .all = std::move(all)

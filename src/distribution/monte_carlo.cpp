@@ -1,9 +1,14 @@
 #include <raywise/distribution/monte_carlo.hpp>
 
 #include <raywise/core/error.hpp>
+#include <raywise/core/function_ref.hpp>
+#include <raywise/core/rng.hpp>
+#include <raywise/geometry/aabb.hpp>
+#include <raywise/geometry/ray.hpp>
 #include <raywise/geometry/ray_box.hpp>
 
 #include <cmath>
+#include <cstddef>
 
 namespace raywise {
 

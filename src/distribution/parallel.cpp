@@ -3,13 +3,25 @@
 #include "distribution/angles.hpp"
 #include "distribution/checks.hpp"
 
+#include <raywise/core/rng.hpp>
 #include <raywise/core/rounding.hpp>
+#include <raywise/geometry/aabb.hpp>
 #include <raywise/geometry/convex_polygon.hpp>
+#include <raywise/geometry/frame.hpp>
+#include <raywise/geometry/ray.hpp>
 #include <raywise/geometry/sampling.hpp>
 #include <raywise/geometry/silhouette.hpp>
+#include <raywise/geometry/vec.hpp>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdlib>
+#include <memory>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 namespace raywise {
 

@@ -3,16 +3,28 @@
 #include "distribution/angles.hpp"
 #include "distribution/checks.hpp"
 
+#include <raywise/core/rng.hpp>
+#include <raywise/distribution/ray_distribution.hpp>
+#include <raywise/geometry/aabb.hpp>
 #include <raywise/geometry/convex_polygon.hpp>
+#include <raywise/geometry/perspective_area.hpp>
+#include <raywise/geometry/ray.hpp>
 #include <raywise/geometry/sampling.hpp>
 #include <raywise/geometry/silhouette.hpp>
+#include <raywise/geometry/solid_angle.hpp>
+#include <raywise/geometry/vec.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <memory>
 #include <numbers>
-#include <span>
+#include <optional>
+#include <utility>
+#include <variant>
+#include <vector>
 
 namespace raywise {
 

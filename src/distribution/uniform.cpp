@@ -2,7 +2,11 @@
 
 #include "distribution/checks.hpp"
 
+#include <raywise/core/rng.hpp>
+#include <raywise/geometry/aabb.hpp>
+#include <raywise/geometry/ray.hpp>
 #include <raywise/geometry/ray_box.hpp>
+#include <raywise/geometry/vec.hpp>
 
 #include <algorithm>
 #include <array>
@@ -74,6 +78,7 @@ double UniformDistribution::density(const Ray& ray) const {
     return 1 / (2 * std::numbers::pi * static_cast<double>(half_area(bounds_)));
 }
 
+// NOLINTNEXTLINE(*-to-static): a member of every distribution
 Vec3d UniformDistribution::direction_at(const Aabb&) const {
     return {1, 1, 1};
 }

@@ -1,6 +1,7 @@
 #include <raywise/geometry/convex_polygon.hpp>
 
 #include <raywise/core/error.hpp>
+#include <raywise/geometry/fixed_polygon.hpp>
 #include <raywise/geometry/vec.hpp>
 
 #include <algorithm>
@@ -101,10 +102,10 @@ ConvexPolygon intersect_by_crossings(const ConvexPolygon& a, const ConvexPolygon
 ConvexPolygon convex_hull(std::span<const Vec2d> points) {
     constexpr std::size_t most = 64;
     if (points.size() > most) throw Error("a hull takes at most 64 points");
-    std::array<Vec2d, most> sorted;
-    std::copy(points.begin(), points.end(), sorted.begin());
-    const auto last = sorted.begin() + static_cast<std::ptrdiff_t>(points.size());
-    std::sort(sorted.begin(), last, [](Vec2d p, Vec2d q) {
+    std::array<Vec2d, most> copies;
+    std::copy(points.begin(), points.end(), copies.begin());
+    const std::span<Vec2d> sorted = std::span(copies).first(points.size());
+    std::sort(sorted.begin(), sorted.end(), [](Vec2d p, Vec2d q) {
         return p.x < q.x || (p.x == q.x && p.y < q.y);
     });
 

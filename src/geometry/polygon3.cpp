@@ -2,6 +2,7 @@
 
 #include <raywise/core/error.hpp>
 #include <raywise/geometry/convex_polygon.hpp>
+#include <raywise/geometry/fixed_polygon.hpp>
 #include <raywise/geometry/ray.hpp>
 #include <raywise/geometry/vec.hpp>
 

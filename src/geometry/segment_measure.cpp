@@ -1,12 +1,17 @@
 #include <raywise/geometry/segment_measure.hpp>
 
 #include <raywise/core/error.hpp>
+#include <raywise/geometry/aabb.hpp>
+#include <raywise/geometry/ray.hpp>
 
 #include <array>
 #include <cmath>
-#include <cstdint>
+#include <cstddef>
 #include <limits>
+#include <memory>
+#include <span>
 #include <utility>
+#include <vector>
 
 namespace raywise {
 
@@ -26,8 +31,8 @@ float inverse(float direction) {
 
 /// The box's planes, each in all lanes.
 struct Planes {
-    std::array<Lane, 3> lo;
-    std::array<Lane, 3> hi;
+    std::array<Lane, 3> lo{};
+    std::array<Lane, 3> hi{};
 
     explicit Planes(const Aabb& box) {
         for (int axis = 0; axis < 3; ++axis) {

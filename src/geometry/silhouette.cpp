@@ -1,6 +1,7 @@
 #include <raywise/geometry/silhouette.hpp>
 
 #include <array>
+#include <cstddef>
 
 namespace raywise {
 

@@ -1,16 +1,31 @@
 #include <raywise/io/area_file.hpp>
 
 #include "io/json_fields.hpp"
+#include "io/json_reader.hpp"
 
 #include <raywise/core/error.hpp>
+#include <raywise/distribution/distribution.hpp>
+#include <raywise/distribution/influence_area.hpp>
+#include <raywise/distribution/parallel.hpp>
+#include <raywise/distribution/radial.hpp>
+#include <raywise/distribution/uniform.hpp>
+#include <raywise/geometry/aabb.hpp>
+#include <raywise/geometry/frame.hpp>
+#include <raywise/geometry/frustum.hpp>
+#include <raywise/geometry/obb.hpp>
+#include <raywise/geometry/region.hpp>
+#include <raywise/geometry/vec.hpp>
 #include <raywise/io/files.hpp>
 #include <raywise/io/ray_file.hpp>
 
 #include <cmath>
+#include <cstddef>
+#include <filesystem>
 #include <numbers>
 #include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace raywise {
 
@@ -291,7 +306,7 @@ read_area(const Json& json, const std::string& path, std::size_t index, const Aa
 
 std::vector<InfluenceArea> load_areas(const std::filesystem::path& path, const Aabb& scene_bounds) {
     const std::string name = path.string();
-    const Json document = detail::parse_json(read_file(path, size_limit), name);
+    const Json document = io_detail::parse_json(read_file(path, size_limit), path);
     JsonFields fields(document, name, "");
     if (fields.number("schema_version") != area_file_schema_version)
         fields.refuse("schema_version is not " + std::to_string(area_file_schema_version));

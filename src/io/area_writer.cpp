@@ -1,7 +1,15 @@
 // Writes influence areas as JSON.
 #include <raywise/core/error.hpp>
 #include <raywise/distribution/influence_area.hpp>
-#include <raywise/geometry/region.hpp>
+#include <raywise/distribution/measured.hpp>
+#include <raywise/distribution/parallel.hpp>
+#include <raywise/distribution/radial.hpp>
+#include <raywise/distribution/uniform.hpp>
+#include <raywise/geometry/aabb.hpp>
+#include <raywise/geometry/frame.hpp>
+#include <raywise/geometry/frustum.hpp>
+#include <raywise/geometry/obb.hpp>
+#include <raywise/geometry/vec.hpp>
 #include <raywise/io/area_file.hpp>
 #include <raywise/io/files.hpp>
 #include <raywise/io/ray_file.hpp>

@@ -1,5 +1,6 @@
 #include "io/bitmap_font.hpp"
 
+#include <array>
 #include <cstddef>
 
 namespace raywise::detail {

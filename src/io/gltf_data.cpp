@@ -1,7 +1,9 @@
 #include "byte_reader.hpp"
 #include "gltf_data.hpp"
+#include "io/json_reader.hpp"
 
 #include <raywise/io/files.hpp>
+#include <raywise/scene/scene.hpp>
 
 #include <fmt/format.h>
 

@@ -1,4 +1,5 @@
 #include "gltf_transform.hpp"
+#include "io/json_reader.hpp"
 
 #include <raywise/geometry/frame.hpp>
 #include <raywise/geometry/vec.hpp>

@@ -1,13 +1,20 @@
 #include <raywise/io/heat_map.hpp>
 
 #include <raywise/core/error.hpp>
+#include <raywise/io/image.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace raywise {
 
@@ -74,7 +81,7 @@ Image draw_cells(const HeatMap& map, const ColorScale& scale, int cell_pixels) {
     Image image(map.width * cell_pixels, map.height * cell_pixels);
     for (int y = 0; y < map.height; ++y)
         for (int x = 0; x < map.width; ++x) {
-            const double value = static_cast<double>(
+            const auto value = static_cast<double>(
                 map.values[static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)]
             );
             const Rgb color = viridis((value - scale.low) / (scale.high - scale.low));

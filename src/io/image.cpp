@@ -5,6 +5,7 @@
 #include <raywise/core/error.hpp>
 
 #include <algorithm>
+#include <cstddef>
 #include <string>
 
 namespace raywise {

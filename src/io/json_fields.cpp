@@ -2,10 +2,13 @@
 
 #include <raywise/core/error.hpp>
 #include <raywise/core/nearest_word.hpp>
+#include <raywise/geometry/vec.hpp>
 
 #include <algorithm>
-#include <set>
+#include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 namespace raywise::detail {
 
@@ -22,27 +25,6 @@ std::string text_of(const JsonFields& fields, const std::string& key, const Json
 }
 
 } // namespace
-
-Json parse_json(std::string_view text, const std::string& path) {
-    std::vector<std::set<std::string>> open_objects;
-    const auto refuse_repeated_keys = [&](int, Json::parse_event_t event, Json& value) {
-        if (event == Json::parse_event_t::object_start) open_objects.emplace_back();
-        if (event == Json::parse_event_t::object_end) open_objects.pop_back();
-        if (event == Json::parse_event_t::key &&
-            !open_objects.back().insert(value.get<std::string>()).second)
-            throw Error(
-                path, nowhere(), "key '" + value.get<std::string>() + "' stands twice in one object"
-            );
-        return true;
-    };
-    try {
-        return Json::parse(text, refuse_repeated_keys);
-    } catch (const Json::parse_error& error) {
-        throw Error(path, at_byte(error.byte), "is not valid JSON");
-    } catch (const Json::exception&) {
-        throw Error(path, nowhere(), "a number is out of range");
-    }
-}
 
 JsonFields::JsonFields(const Json& json, std::string path, std::string context)
     : json_(json), path_(std::move(path)), context_(std::move(context)) {

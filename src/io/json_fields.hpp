@@ -15,10 +15,6 @@ namespace raywise::detail {
 
 using Json = nlohmann::json;
 
-/// The text as JSON. Throws Error, naming the file, for text that is none (with the byte) and for
-/// an object in which a key stands twice.
-[[nodiscard]] Json parse_json(std::string_view text, const std::string& path);
-
 /// One object of a file. `context` names it in errors: "area 'sun'". Ask for every key that it may
 /// have, then call `refuse_others`.
 class JsonFields {

@@ -10,8 +10,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <initializer_list>
-#include <numeric>
 #include <optional>
 #include <set>
 #include <string>
@@ -106,21 +104,6 @@ void check_depth(std::string_view text, const std::filesystem::path& path) {
     }
 }
 
-/// The number of single-letter insertions, removals and replacements between two words.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-    std::vector<std::size_t> row(b.size() + 1);
-    std::iota(row.begin(), row.end(), std::size_t{0});
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        std::size_t diagonal = std::exchange(row[0], i + 1);
-        for (std::size_t j = 0; j < b.size(); ++j) {
-            const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-            diagonal = row[j + 1];
-            row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
-        }
-    }
-    return row.back();
-}
-
 } // namespace
 
 json parse_json(std::string_view text, const std::filesystem::path& path) {
@@ -148,30 +131,12 @@ std::uint64_t count_json_tokens(std::string_view text) {
     }));
 }
 
-std::string_view nearest(std::string_view word, std::initializer_list<std::string_view> known) {
-    word = word.substr(0, 64); // the distance takes time in the product of the lengths
-    return *std::min_element(known.begin(), known.end(), [&](auto a, auto b) {
-        return edit_distance(word, a) < edit_distance(word, b);
-    });
-}
-
 void JsonValue::refuse(std::string_view reason) const {
     throw Error(
         path_->string(),
         nowhere(),
         where_.empty() ? std::string(reason) : fmt::format("{}: {}", escaped(where_, 100), reason)
     );
-}
-
-void JsonValue::expect_keys(std::initializer_list<std::string_view> known) const {
-    if (!value_->is_object()) refuse("must be an object");
-    for (const auto& member : value_->items())
-        if (std::find(known.begin(), known.end(), member.key()) == known.end())
-            refuse(fmt::format(
-                "unknown key '{}'; did you mean '{}'?",
-                escaped(member.key(), 60),
-                nearest(member.key(), known)
-            ));
 }
 
 std::optional<JsonValue> JsonValue::find(std::string_view key) const {

@@ -1,4 +1,4 @@
-// Reads JSON strictly: no repeated keys, no unknown ones, no value of another type than asked for.
+// Reads JSON strictly: no repeated keys, no value of another type than asked for.
 // Every refusal names the file and the value's place in it, such as areas[2].region.
 #pragma once
 
@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -24,10 +23,6 @@ inline constexpr int max_json_depth = 64;
 /// Commas, colons and brackets in the text: what its document takes memory by.
 [[nodiscard]] std::uint64_t count_json_tokens(std::string_view text);
 
-/// The one of `known` that takes the fewest single-letter changes to become `word`.
-[[nodiscard]] std::string_view
-nearest(std::string_view word, std::initializer_list<std::string_view> known);
-
 /// A value of a document, and how it was reached. Refers to the document and the path.
 class JsonValue {
 public:
@@ -41,11 +36,6 @@ public:
     [[nodiscard]] bool is_object() const { return value_->is_object(); }
 
     [[nodiscard]] bool is_array() const { return value_->is_array(); }
-
-    [[nodiscard]] bool is_string() const { return value_->is_string(); }
-
-    /// Refuses unless it is an object whose keys are all among `known`.
-    void expect_keys(std::initializer_list<std::string_view> known) const;
 
     /// The member; nullopt when there is none. Refuses unless this is an object.
     [[nodiscard]] std::optional<JsonValue> find(std::string_view key) const;

@@ -6,7 +6,6 @@
 #include <raywise/io/files.hpp>
 #include <raywise/scene/scene.hpp>
 
-#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <string>

@@ -2,6 +2,9 @@
 #include "byte_reader.hpp"
 #include "scene_writer.hpp"
 
+#include <raywise/core/ids.hpp>
+#include <raywise/geometry/triangle.hpp>
+#include <raywise/geometry/triangle_view.hpp>
 #include <raywise/geometry/vec.hpp>
 #include <raywise/scene/scene.hpp>
 

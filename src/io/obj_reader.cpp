@@ -16,6 +16,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -119,7 +120,8 @@ private:
     }
 
     /// Checks a normal or a texture point; 1, for the counter.
-    std::int64_t read_numbers(std::string_view line, std::size_t least, std::size_t most) const {
+    [[nodiscard]] std::int64_t
+    read_numbers(std::string_view line, std::size_t least, std::size_t most) const {
         std::size_t count = 0;
         for (; line.find_first_not_of(" \t") != std::string_view::npos; ++count)
             (void)next_number(line);
@@ -129,7 +131,8 @@ private:
     }
 
     /// An index from 1, or from -1 backward, into `count` items so far; from 0.
-    std::uint32_t resolve(std::string_view token, std::int64_t count, std::string_view what) const {
+    [[nodiscard]] std::uint32_t
+    resolve(std::string_view token, std::int64_t count, std::string_view what) const {
         const auto index = parse_integer(token);
         if (!index) refuse(fmt::format("'{}' is not an index", escaped(token, 60)));
         if (*index == 0 || *index > count || *index < -count)
@@ -138,7 +141,7 @@ private:
     }
 
     /// v, v/vt, v//vn or v/vt/vn; the vertex.
-    std::uint32_t read_corner(std::string_view token) const {
+    [[nodiscard]] std::uint32_t read_corner(std::string_view token) const {
         const std::size_t first = std::min(token.find('/'), token.size());
         const auto vertices = static_cast<std::int64_t>(reader_.scene().vertices.size());
         const std::uint32_t vertex = resolve(token.substr(0, first), vertices, "vertex");
@@ -148,8 +151,9 @@ private:
         const std::string_view texture = rest.substr(0, second);
         // "1//2" has no texture point; "1/" and "1/2/" are unfinished.
         if (!texture.empty() || second == rest.size())
-            resolve(texture, texture_points_, "texture point");
-        if (second < rest.size()) resolve(rest.substr(second + 1), normals_, "normal");
+            static_cast<void>(resolve(texture, texture_points_, "texture point"));
+        if (second < rest.size())
+            static_cast<void>(resolve(rest.substr(second + 1), normals_, "normal"));
         return vertex;
     }
 
@@ -169,8 +173,9 @@ private:
         std::array<std::uint32_t, 3> seen{};
         std::size_t count = 0;
         for (const std::uint32_t corner : corners_) {
-            const auto end = seen.begin() + static_cast<std::ptrdiff_t>(count);
-            if (std::find(seen.begin(), end, corner) == end) seen[count++] = corner;
+            const std::span<const std::uint32_t> before = std::span(seen).first(count);
+            if (std::find(before.begin(), before.end(), corner) == before.end())
+                seen[count++] = corner;
             if (count == 3) break;
         }
         return count;

@@ -2,6 +2,9 @@
 
 #include <raywise/io/files.hpp>
 
+#include <cstddef>
+#include <cstdint>
+#include <span>
 #include <string>
 
 namespace raywise {

@@ -1,3 +1,4 @@
+#include "io/scene_reader.hpp"
 #include "ply_header.hpp"
 #include "text_lines.hpp"
 #include "text_number.hpp"
@@ -8,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -138,7 +140,7 @@ private:
         if (properties.size() > max_properties) refuse("more than 1,024 properties in an element");
     }
 
-    PlyType parse_type(std::string_view name) const {
+    [[nodiscard]] PlyType parse_type(std::string_view name) const {
         const auto type = type_named(name);
         if (!type) refuse(fmt::format("unknown type '{}'", escaped(name, 60)));
         return *type;

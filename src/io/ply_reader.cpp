@@ -7,7 +7,6 @@
 #include "text_number.hpp"
 
 #include <raywise/core/error.hpp>
-#include <raywise/geometry/vec.hpp>
 
 #include <fmt/format.h>
 
@@ -15,7 +14,6 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <string_view>
 #include <vector>

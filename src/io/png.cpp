@@ -2,10 +2,13 @@
 
 #include <raywise/core/error.hpp>
 #include <raywise/io/files.hpp>
+#include <raywise/io/image.hpp>
 
 #include <png.h>
 
+#include <cstddef>
 #include <string>
+#include <vector>
 
 namespace raywise {
 

@@ -6,6 +6,8 @@
 #include "zip.hpp"
 
 #include <raywise/core/error.hpp>
+#include <raywise/core/ids.hpp>
+#include <raywise/distribution/measured.hpp>
 #include <raywise/geometry/ray.hpp>
 #include <raywise/io/files.hpp>
 
@@ -16,6 +18,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <span>

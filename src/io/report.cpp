@@ -8,7 +8,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <fstream>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
 
 namespace raywise {
 

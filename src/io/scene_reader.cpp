@@ -2,12 +2,15 @@
 #include "triangulate.hpp"
 
 #include <raywise/core/error.hpp>
+#include <raywise/geometry/vec.hpp>
+#include <raywise/io/load_scene.hpp>
 #include <raywise/scene/scene.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
@@ -157,7 +160,7 @@ Scene SceneReader::finish() {
 float narrowed(double value) {
     // The conversion of a number beyond the largest float is undefined. One between it and the
     // midpoint to 2^128 rounds to it.
-    constexpr double largest = static_cast<double>(std::numeric_limits<float>::max());
+    constexpr auto largest = static_cast<double>(std::numeric_limits<float>::max());
     constexpr double midpoint = 0x1.ffffffp127;
     if (std::abs(value) >= midpoint)
         return value > 0 ? std::numeric_limits<float>::infinity()

@@ -1,6 +1,7 @@
 #include "text_lines.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <optional>
 #include <string_view>
 

@@ -9,6 +9,7 @@
 #include <raywise/bvh/validate.hpp>
 #include <raywise/core/error.hpp>
 #include <raywise/core/hash.hpp>
+#include <raywise/core/ids.hpp>
 #include <raywise/io/files.hpp>
 
 #include <fmt/format.h>

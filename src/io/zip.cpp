@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <map>
 #include <span>
@@ -187,7 +188,7 @@ std::string write_zip(std::span<const std::pair<std::string, std::string>> membe
         append(common, static_cast<std::uint16_t>(name.size()));
         append(common, std::uint16_t{0});
         append(bytes, local_mark);
-        bytes += common + name + content;
+        bytes.append(common).append(name).append(content);
         append(directory, central_mark);
         append(directory, std::uint16_t{20});
         directory += common;

@@ -1,7 +1,14 @@
 #include <raywise/optimize/child_order.hpp>
 
+#include <raywise/bvh/bvh.hpp>
+#include <raywise/bvh/cost_constants.hpp>
+#include <raywise/core/ids.hpp>
+#include <raywise/geometry/aabb.hpp>
+#include <raywise/geometry/triangle.hpp>
+#include <raywise/geometry/vec.hpp>
+#include <raywise/optimize/depth_first.hpp>
+
 #include <algorithm>
-#include <cstddef>
 #include <utility>
 
 namespace raywise {

@@ -78,7 +78,7 @@ public:
 
     /// The slots that a wide node made of `id` has, by rising promise; equal ones left to right.
     struct Slots {
-        std::array<NodeId, width> ids;
+        std::array<NodeId, width> ids{};
         std::size_t count = 0;
     };
 
@@ -88,11 +88,11 @@ public:
             slots.ids[slots.count++] = id;
         else
             share(id, width, slots);
-        const auto end = slots.ids.begin() + static_cast<std::ptrdiff_t>(slots.count);
+        NodeId* const first = slots.ids.data();
         // By insertion: stable, and eight slots at most.
-        for (auto next = slots.ids.begin(); next != end; ++next) {
+        for (NodeId* next = first; next != first + slots.count; ++next) {
             const auto is_less = [&](NodeId a, NodeId b) { return promise(a) < promise(b); };
-            std::rotate(std::upper_bound(slots.ids.begin(), next, *next, is_less), next, next + 1);
+            std::rotate(std::upper_bound(first, next, *next, is_less), next, next + 1);
         }
         return slots;
     }
@@ -113,7 +113,7 @@ private:
         plan(to_index(id));
     }
 
-    void look_out(std::size_t at, const Node& node) {
+    void look_out(std::size_t at, const Node& node) const {
         const std::size_t left = to_index(node.left());
         const std::size_t right = to_index(node.right());
         weights_.outlook[at] = outlook_in_order(

@@ -1,6 +1,8 @@
 #include <raywise/optimize/depth_first.hpp>
 
+#include <raywise/bvh/bvh.hpp>
 #include <raywise/bvh/walk.hpp>
+#include <raywise/core/ids.hpp>
 
 #include <cstddef>
 #include <cstdint>

@@ -1,5 +1,5 @@
 // A city: blocks of houses of different heights along a grid of streets.
-#include "mesh_builder.hpp"
+#include "scene/mesh_builder.hpp"
 
 #include <raywise/core/rng.hpp>
 #include <raywise/geometry/frame.hpp>
@@ -7,7 +7,6 @@
 #include <raywise/scene/generate.hpp>
 #include <raywise/scene/scene.hpp>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -100,7 +99,8 @@ void add_house(MeshBuilder& mesh, double x, double z, Rng& rng) {
 
 /// Where a lot begins on one axis: every `lots` lots a street.
 double lot_start(int index) {
-    return index * lot + (index / lots + 1) * street;
+    const int streets = index / lots + 1;
+    return index * lot + streets * street;
 }
 
 /// Houses fill the square of lots row by row; the last row may stay incomplete.

@@ -1,5 +1,5 @@
 // A forest: trees of trunks, branches and single leaves on uneven ground.
-#include "mesh_builder.hpp"
+#include "scene/mesh_builder.hpp"
 
 #include <raywise/core/rng.hpp>
 #include <raywise/geometry/frame.hpp>
@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 
 namespace raywise {

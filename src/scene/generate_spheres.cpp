@@ -1,5 +1,5 @@
 // Clusters of spheres: triangle densities that differ by orders of magnitude.
-#include "mesh_builder.hpp"
+#include "scene/mesh_builder.hpp"
 
 #include <raywise/core/rng.hpp>
 #include <raywise/geometry/frame.hpp>
@@ -7,7 +7,6 @@
 #include <raywise/scene/generate.hpp>
 #include <raywise/scene/scene.hpp>
 
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <string>

@@ -1,5 +1,5 @@
 // A terrain: a height field of summed value noise.
-#include "mesh_builder.hpp"
+#include "scene/mesh_builder.hpp"
 
 #include <raywise/core/rng.hpp>
 #include <raywise/geometry/frame.hpp>

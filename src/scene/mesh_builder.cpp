@@ -1,4 +1,4 @@
-#include "mesh_builder.hpp"
+#include "scene/mesh_builder.hpp"
 
 #include <raywise/core/error.hpp>
 #include <raywise/geometry/vec.hpp>

@@ -4,11 +4,17 @@
 
 #include <raywise/core/error.hpp>
 #include <raywise/core/hash.hpp>
+#include <raywise/core/ids.hpp>
 #include <raywise/core/rounding.hpp>
+#include <raywise/geometry/aabb.hpp>
+#include <raywise/geometry/triangle.hpp>
+#include <raywise/geometry/triangle_view.hpp>
+#include <raywise/geometry/vec.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <numbers>
 #include <span>
@@ -107,6 +113,18 @@ void validate_groups(const Scene& scene) {
     }
 }
 
+using SortedCorners = std::array<std::array<float, 3>, 3>;
+
+SortedCorners sorted_corners(const Triangle& triangle) {
+    // Adding +0 turns -0 into +0.
+    const auto place = [](Vec3 corner) {
+        return std::array{corner.x + 0.0F, corner.y + 0.0F, corner.z + 0.0F};
+    };
+    SortedCorners corners{place(triangle.v0), place(triangle.v1), place(triangle.v2)};
+    std::sort(corners.begin(), corners.end());
+    return corners;
+}
+
 } // namespace
 
 Aabb bounds(const Scene& scene) {
@@ -159,6 +177,16 @@ std::size_t count_degenerate(const Scene& scene) {
     for (std::size_t i = 0; i < view.size(); ++i)
         if (is_degenerate(view[to_prim(i)])) ++count;
     return count;
+}
+
+std::size_t count_duplicates(const Scene& scene) {
+    const TriangleView view = scene.view();
+    std::vector<SortedCorners> all(view.size());
+    for (std::size_t i = 0; i < view.size(); ++i)
+        all[i] = sorted_corners(view[to_prim(i)]);
+    std::sort(all.begin(), all.end());
+    const auto first_copy = std::unique(all.begin(), all.end());
+    return static_cast<std::size_t>(all.end() - first_copy);
 }
 
 void validate(const Scene& scene) {

@@ -2,11 +2,25 @@
 
 #include "toplevel/batches.hpp"
 
+#include <raywise/bvh/wide_bvh.hpp>
 #include <raywise/core/error.hpp>
+#include <raywise/core/executor.hpp>
+#include <raywise/distribution/influence_area.hpp>
+#include <raywise/geometry/ray.hpp>
+#include <raywise/geometry/region.hpp>
+#include <raywise/geometry/vec.hpp>
+#include <raywise/toplevel/area_id.hpp>
+#include <raywise/toplevel/region_index.hpp>
+#include <raywise/toplevel/served.hpp>
+#include <raywise/trace/wide.hpp>
 
 #include <algorithm>
+#include <cstddef>
 #include <limits>
+#include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 
 namespace raywise {
 namespace {

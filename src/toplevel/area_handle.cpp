@@ -2,15 +2,30 @@
 #include "toplevel/batches.hpp"
 #include "toplevel/faster_way.hpp"
 
+#include <raywise/bvh/wide_bvh.hpp>
 #include <raywise/core/error.hpp>
+#include <raywise/core/executor.hpp>
+#include <raywise/core/ids.hpp>
+#include <raywise/distribution/influence_area.hpp>
+#include <raywise/geometry/ray.hpp>
+#include <raywise/geometry/vec.hpp>
 #include <raywise/pencil/inversion.hpp>
+#include <raywise/pencil/pencil.hpp>
+#include <raywise/pencil/pencil_grid.hpp>
 #include <raywise/toplevel/accelerator.hpp>
 #include <raywise/toplevel/pencil_of.hpp>
+#include <raywise/toplevel/served.hpp>
+#include <raywise/toplevel/structure_choice.hpp>
+#include <raywise/trace/wide.hpp>
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <memory>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
 
 namespace raywise {
 namespace {
@@ -188,8 +203,10 @@ void AreaHandle::closest_hits(
 ) const {
     detail::check_answers(rays.size(), hits.size());
     const LocalStructure& own = structure();
-    if (is_worth_drawing(rays.size()) && are_exact(rays, executor))
-        return closest_hits_once(own.triangles->view(), *own.pencil, rays, hits, executor);
+    if (is_worth_drawing(rays.size()) && are_exact(rays, executor)) {
+        closest_hits_once(own.triangles->view(), *own.pencil, rays, hits, executor);
+        return;
+    }
     const auto by_trees = [&](const Ray& ray) { return closest_hit_by_trees(ray).value_or(Hit{}); };
     answer_batch(
         rays,
@@ -212,8 +229,10 @@ void AreaHandle::any_hits(
 ) const {
     detail::check_answers(rays.size(), occluded.size());
     const LocalStructure& own = structure();
-    if (is_worth_drawing(rays.size()) && are_exact(rays, executor))
-        return any_hits_once(own.triangles->view(), *own.pencil, rays, occluded, executor);
+    if (is_worth_drawing(rays.size()) && are_exact(rays, executor)) {
+        any_hits_once(own.triangles->view(), *own.pencil, rays, occluded, executor);
+        return;
+    }
     const auto by_trees = [&](const Ray& ray) { return any_hit_by_trees(ray); };
     answer_batch(
         rays,

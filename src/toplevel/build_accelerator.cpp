@@ -2,16 +2,46 @@
 #include "toplevel/predicted_costs.hpp"
 #include "toplevel/sampled_rays.hpp"
 
+#include <raywise/bvh/bvh.hpp>
+#include <raywise/bvh/cost_constants.hpp>
 #include <raywise/bvh/remap.hpp>
+#include <raywise/bvh/wide_bvh.hpp>
 #include <raywise/core/error.hpp>
+#include <raywise/core/executor.hpp>
+#include <raywise/core/ids.hpp>
+#include <raywise/core/progress.hpp>
+#include <raywise/distribution/any_measure.hpp>
+#include <raywise/distribution/distribution.hpp>
+#include <raywise/distribution/influence_area.hpp>
+#include <raywise/distribution/measured.hpp>
+#include <raywise/distribution/parallel.hpp>
+#include <raywise/geometry/hit_measure.hpp>
+#include <raywise/geometry/ray.hpp>
+#include <raywise/geometry/region.hpp>
+#include <raywise/geometry/triangle_copy.hpp>
+#include <raywise/geometry/triangle_view.hpp>
+#include <raywise/geometry/vec.hpp>
+#include <raywise/pencil/pencil_grid.hpp>
+#include <raywise/scene/scene.hpp>
 #include <raywise/toplevel/accelerator.hpp>
+#include <raywise/toplevel/area_id.hpp>
+#include <raywise/toplevel/build_tree.hpp>
+#include <raywise/toplevel/build_wide.hpp>
+#include <raywise/toplevel/membership.hpp>
 #include <raywise/toplevel/pencil_of.hpp>
+#include <raywise/toplevel/region_index.hpp>
+#include <raywise/toplevel/region_octree.hpp>
+#include <raywise/toplevel/served.hpp>
+#include <raywise/toplevel/structure_choice.hpp>
+#include <raywise/trace/observer.hpp>
 
 #include <algorithm>
+#include <cstddef>
 #include <memory>
 #include <set>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace raywise {
@@ -129,6 +159,7 @@ public:
                       triangles_
                   );
         std::vector<Region> regions;
+        regions.reserve(result_.areas_.size());
         for (const InfluenceArea& area : result_.areas_)
             regions.push_back(area.region);
         result_.index_ = build_region_index(regions, result_.params_.index);

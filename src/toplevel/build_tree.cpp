@@ -3,10 +3,24 @@
 #include "build_with.hpp"
 
 #include <raywise/core/error.hpp>
+#include <raywise/core/executor.hpp>
+#include <raywise/core/ids.hpp>
 #include <raywise/core/rng.hpp>
+#include <raywise/distribution/distribution.hpp>
+#include <raywise/distribution/measured.hpp>
+#include <raywise/geometry/aabb.hpp>
+#include <raywise/geometry/hit_measure.hpp>
+#include <raywise/geometry/mixed_measure.hpp>
+#include <raywise/geometry/triangle.hpp>
+#include <raywise/geometry/triangle_view.hpp>
+#include <raywise/geometry/vec.hpp>
 
+#include <cstddef>
+#include <optional>
+#include <span>
 #include <type_traits>
 #include <utility>
+#include <variant>
 
 namespace raywise {
 namespace {

@@ -1,16 +1,29 @@
 #include <raywise/toplevel/build_wide.hpp>
 
 #include <raywise/build/binned.hpp>
+#include <raywise/build/binned_params.hpp>
 #include <raywise/build/spatial.hpp>
 #include <raywise/bvh/box_frame.hpp>
+#include <raywise/bvh/bvh.hpp>
+#include <raywise/bvh/wide_bvh.hpp>
 #include <raywise/core/error.hpp>
+#include <raywise/core/executor.hpp>
 #include <raywise/core/function_ref.hpp>
+#include <raywise/core/ids.hpp>
+#include <raywise/distribution/distribution.hpp>
+#include <raywise/geometry/aabb.hpp>
+#include <raywise/geometry/hit_measure.hpp>
 #include <raywise/geometry/mixed_measure.hpp>
+#include <raywise/geometry/triangle.hpp>
+#include <raywise/geometry/triangle_copy.hpp>
+#include <raywise/geometry/triangle_view.hpp>
+#include <raywise/geometry/vec.hpp>
 #include <raywise/optimize/collapse.hpp>
 #include <raywise/optimize/reinsertion.hpp>
 #include <raywise/toplevel/build_tree.hpp>
 
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 #include <type_traits>
 #include <variant>

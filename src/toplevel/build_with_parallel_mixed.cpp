@@ -1,5 +1,5 @@
 // The builders for parallel rays with a grain of uniform lines.
-#include "build_with.inl.hpp"
+#include "build_with.inl.hpp" // IWYU pragma: keep
 
 namespace raywise::detail {
 

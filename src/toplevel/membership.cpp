@@ -1,9 +1,17 @@
 #include <raywise/toplevel/membership.hpp>
 
 #include <raywise/core/error.hpp>
+#include <raywise/core/executor.hpp>
+#include <raywise/core/ids.hpp>
+#include <raywise/geometry/aabb.hpp>
+#include <raywise/geometry/region.hpp>
+#include <raywise/geometry/triangle.hpp>
+#include <raywise/geometry/triangle_view.hpp>
+#include <raywise/geometry/vec.hpp>
 #include <raywise/scene/scene.hpp>
 
 #include <cstddef>
+#include <vector>
 
 namespace raywise {
 namespace {

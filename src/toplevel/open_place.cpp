@@ -1,8 +1,15 @@
 #include <raywise/toplevel/open_place.hpp>
 
+#include <raywise/core/ids.hpp>
 #include <raywise/core/rng.hpp>
+#include <raywise/geometry/aabb.hpp>
+#include <raywise/geometry/triangle.hpp>
+#include <raywise/geometry/triangle_view.hpp>
+#include <raywise/geometry/vec.hpp>
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
 
 namespace raywise {

@@ -1,5 +1,12 @@
 #include <raywise/toplevel/pencil_of.hpp>
 
+#include <raywise/distribution/influence_area.hpp>
+#include <raywise/distribution/parallel.hpp>
+#include <raywise/distribution/radial.hpp>
+#include <raywise/geometry/vec.hpp>
+#include <raywise/pencil/pencil.hpp>
+
+#include <optional>
 #include <variant>
 
 namespace raywise {
@@ -18,8 +25,8 @@ std::optional<Pencil> central_pencil_of(const InfluenceArea& area) {
 std::optional<Pencil> pencil_of(const InfluenceArea& area) {
     const auto* parallel = std::get_if<ParallelDistribution>(&area.distribution);
     const auto* radial = std::get_if<RadialDistribution>(&area.distribution);
-    const bool is_blurred = (parallel && parallel->params().cone_half_angle_deg > 0) ||
-                            (radial && radial->params().radius > 0);
+    const bool is_blurred = (parallel != nullptr && parallel->params().cone_half_angle_deg > 0) ||
+                            (radial != nullptr && radial->params().radius > 0);
     return is_blurred ? std::nullopt : central_pencil_of(area);
 }
 

@@ -1,17 +1,25 @@
 #include <raywise/toplevel/propose_areas.hpp>
 
 #include <raywise/core/error.hpp>
+#include <raywise/distribution/influence_area.hpp>
+#include <raywise/distribution/parallel.hpp>
+#include <raywise/distribution/radial.hpp>
+#include <raywise/geometry/aabb.hpp>
 #include <raywise/geometry/frame.hpp>
 #include <raywise/geometry/frustum.hpp>
 #include <raywise/geometry/obb.hpp>
+#include <raywise/geometry/vec.hpp>
+#include <raywise/scene/scene.hpp>
 #include <raywise/toplevel/open_place.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace raywise {
 namespace {
@@ -38,9 +46,9 @@ Aabb wide_bounds(const Scene& scene, double margin) {
 /// Ray origins are floats: an eye between them would lie outside its own frustum's apex. Written
 /// through memory: g++ 12 takes two neighboring conversions to float and back for nothing at -O2.
 Vec3d as_origin(Vec3d eye) {
-    volatile float x = static_cast<float>(eye.x);
-    volatile float y = static_cast<float>(eye.y);
-    volatile float z = static_cast<float>(eye.z);
+    volatile auto x = static_cast<float>(eye.x);
+    volatile auto y = static_cast<float>(eye.y);
+    volatile auto z = static_cast<float>(eye.z);
     return {static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)};
 }
 

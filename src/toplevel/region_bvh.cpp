@@ -1,7 +1,15 @@
 #include <raywise/toplevel/region_bvh.hpp>
 
 #include <raywise/build/binned.hpp>
+#include <raywise/bvh/bvh.hpp>
+#include <raywise/core/ids.hpp>
+#include <raywise/geometry/aabb.hpp>
 #include <raywise/geometry/hit_measure.hpp>
+#include <raywise/geometry/region.hpp>
+
+#include <cstddef>
+#include <span>
+#include <vector>
 
 namespace raywise {
 

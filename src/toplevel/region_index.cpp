@@ -1,5 +1,13 @@
 #include <raywise/toplevel/region_index.hpp>
 
+#include <raywise/geometry/region.hpp>
+#include <raywise/toplevel/region_bvh.hpp>
+#include <raywise/toplevel/region_list.hpp>
+
+#include <cstddef>
+#include <span>
+#include <variant>
+
 namespace raywise {
 
 AnyRegionIndex

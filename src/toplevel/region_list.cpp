@@ -1,5 +1,11 @@
 #include <raywise/toplevel/region_list.hpp>
 
+#include <raywise/geometry/aabb.hpp>
+#include <raywise/geometry/region.hpp>
+
+#include <cstddef>
+#include <span>
+
 namespace raywise {
 
 RegionList::RegionList(std::span<const Region> regions) : regions_(regions.begin(), regions.end()) {

@@ -1,9 +1,18 @@
 #include <raywise/toplevel/region_octree.hpp>
 
 #include <raywise/core/error.hpp>
+#include <raywise/geometry/aabb.hpp>
+#include <raywise/geometry/region.hpp>
+#include <raywise/geometry/vec.hpp>
+#include <raywise/toplevel/area_id.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <variant>
+#include <vector>
 
 namespace raywise {
 namespace {

@@ -1,9 +1,22 @@
 #include "toplevel/sampled_rays.hpp"
 
+#include <raywise/core/ids.hpp>
 #include <raywise/core/rng.hpp>
+#include <raywise/distribution/distribution.hpp>
+#include <raywise/distribution/influence_area.hpp>
+#include <raywise/distribution/parallel.hpp>
+#include <raywise/distribution/radial.hpp>
+#include <raywise/geometry/ray.hpp>
+#include <raywise/geometry/region.hpp>
+#include <raywise/geometry/triangle.hpp>
+#include <raywise/geometry/triangle_view.hpp>
+#include <raywise/geometry/vec.hpp>
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <variant>
+#include <vector>
 
 namespace raywise::detail {
 namespace {

@@ -1,5 +1,11 @@
 #include <raywise/toplevel/traced_tree.hpp>
 
+#include <raywise/bvh/bvh.hpp>
+#include <raywise/bvh/wide_bvh.hpp>
+#include <raywise/core/ids.hpp>
+
+#include <cstddef>
+
 namespace raywise {
 
 std::size_t TracedTree::size_in_bytes() const {

@@ -6,7 +6,6 @@
 #include <raywise/core/error.hpp>
 #include <raywise/core/executor.hpp>
 #include <raywise/core/function_ref.hpp>
-#include <raywise/core/ids.hpp>
 #include <raywise/geometry/ray.hpp>
 #include <raywise/trace/observer.hpp>
 

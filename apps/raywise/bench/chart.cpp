@@ -1,11 +1,18 @@
 #include "bench/chart.hpp"
 #include "bench/goals.hpp"
+#include "bench/rows.hpp"
+
+#include <raywise/analysis/ray_class.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
 #include <vector>
 
 namespace raywise::app {

@@ -1,14 +1,25 @@
 #include "bench/class_bench.hpp"
+#include "bench/pinned.hpp"
 #include "bench/race.hpp"
+#include "bench/rows.hpp"
+#include "peer/embree.hpp"
 
 #include <raywise/analysis/answer_check.hpp>
+#include <raywise/analysis/ray_class.hpp>
+#include <raywise/analysis/ray_order.hpp>
+#include <raywise/analysis/ray_workload.hpp>
 #include <raywise/analysis/side_by_side.hpp>
 #include <raywise/core/error.hpp>
 #include <raywise/core/hash.hpp>
+#include <raywise/geometry/ray.hpp>
+#include <raywise/toplevel/served.hpp>
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <span>
 #include <type_traits>
+#include <vector>
 
 namespace raywise::app {
 
@@ -67,7 +78,7 @@ public:
 
 private:
     /// The number of rays that it was checked on.
-    std::size_t check_oracle() const {
+    [[nodiscard]] std::size_t check_oracle() const {
         const std::size_t samples =
             effort_.brute_force / contest_.triangles.size() / rays_.emitters.size() + 1;
         std::size_t checked = 0;
@@ -81,7 +92,7 @@ private:
         return checked;
     }
 
-    BenchRow measure_single(BenchRow row) const {
+    [[nodiscard]] BenchRow measure_single(BenchRow row) const {
         row.peer = Peer::single;
         const auto ours = [&] { race_.trace_singly(contest_.accelerator); };
         const auto peer = [&] { race_.trace_peer(contest_.peers.high, {}); };
@@ -105,7 +116,7 @@ private:
         return row;
     }
 
-    BenchRow measure_best(BenchRow row) const {
+    [[nodiscard]] BenchRow measure_best(BenchRow row) const {
         row.peer = Peer::best;
         const PeerCall call = race_.fastest_call(contest_.peers.high);
         const auto ours = [&] { race_.trace_in_batches(contest_.accelerator); };

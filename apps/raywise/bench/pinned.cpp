@@ -1,5 +1,10 @@
 #include "bench/pinned.hpp"
 
+#include <raywise/core/executor.hpp>
+
+#include <memory>
+#include <utility>
+
 #if defined(__linux__)
 #include <sched.h>
 #endif

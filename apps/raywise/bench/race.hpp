@@ -183,6 +183,7 @@ public:
         const Pinned pinned(machine_.trace);
         const std::vector<PeerCall> calls = peer_calls(orders_of(rays_.rays));
         std::vector<double> times;
+        times.reserve(calls.size());
         for (const PeerCall& call : calls)
             times.push_back(time_of(peer, call));
         constexpr double near = 1.3;

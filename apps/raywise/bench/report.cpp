@@ -1,15 +1,25 @@
+#include <raywise/io/report.hpp>
+
 #include "bench/goals.hpp"
 #include "bench/report.hpp"
+#include "bench/rows.hpp"
 
+#include <raywise/analysis/ray_class.hpp>
 #include <raywise/analysis/statistics.hpp>
 #include <raywise/core/hash.hpp>
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 namespace raywise::app {
 

@@ -1,17 +1,29 @@
+#include "bench/class_bench.hpp"
+#include "bench/rows.hpp"
 #include "bench/scaling.hpp"
 
 #include <raywise/analysis/exact_oracle.hpp>
+#include <raywise/analysis/ray_class.hpp>
+#include <raywise/analysis/ray_workload.hpp>
 #include <raywise/analysis/side_by_side.hpp>
+#include <raywise/core/executor.hpp>
+#include <raywise/core/progress.hpp>
+#include <raywise/geometry/ray.hpp>
 #include <raywise/pencil/pencil_grid.hpp>
+#include <raywise/scene/scene.hpp>
 #include <raywise/toplevel/accelerator.hpp>
 
 #include <fmt/format.h>
 
 #include <array>
+#include <cstddef>
 #include <map>
 #include <memory>
+#include <span>
+#include <string>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 namespace raywise::app {
 

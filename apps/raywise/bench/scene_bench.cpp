@@ -1,17 +1,33 @@
+#include "bench/class_bench.hpp"
+#include "bench/rows.hpp"
 #include "bench/scene_bench.hpp"
+#include "peer/embree.hpp"
 
 #include <raywise/analysis/memory_speed.hpp>
+#include <raywise/analysis/ray_class.hpp>
+#include <raywise/analysis/ray_workload.hpp>
 #include <raywise/analysis/statistics.hpp>
 #include <raywise/analysis/stopwatch.hpp>
+#include <raywise/core/progress.hpp>
+#include <raywise/distribution/influence_area.hpp>
+#include <raywise/distribution/parallel.hpp>
+#include <raywise/pencil/pencil.hpp>
 #include <raywise/pencil/pencil_grid.hpp>
+#include <raywise/scene/scene.hpp>
+#include <raywise/toplevel/accelerator.hpp>
 #include <raywise/toplevel/pencil_of.hpp>
+#include <raywise/toplevel/structure_choice.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <span>
+#include <string>
 #include <utility>
 #include <variant>
+#include <vector>
 
 namespace raywise::app {
 
@@ -21,13 +37,13 @@ namespace {
 class SceneBencher {
 public:
     SceneBencher(
-        const std::string& title,
+        std::string title,
         const Scene& scene,
         const BenchParams& params,
         const BenchMachine& machine,
         const Progress& progress
     )
-        : title_(title)
+        : title_(std::move(title))
         , scene_(scene)
         , params_(params)
         , machine_(machine)

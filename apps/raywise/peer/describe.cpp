@@ -1,6 +1,12 @@
 #include "embree.hpp"
 
+#include <raywise/analysis/ray_order.hpp>
+
 #include <fmt/format.h>
+
+#include <span>
+#include <string>
+#include <vector>
 
 namespace raywise::app {
 

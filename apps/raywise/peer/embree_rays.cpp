@@ -1,11 +1,21 @@
 #include "embree_state.hpp"
 #include "flushed_denormals.hpp"
+#include "peer/embree.hpp"
 
+#include <raywise/analysis/ray_order.hpp>
 #include <raywise/core/error.hpp>
+#include <raywise/core/executor.hpp>
+#include <raywise/core/ids.hpp>
+#include <raywise/geometry/ray.hpp>
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <memory>
+#include <span>
 #include <type_traits>
+#include <vector>
 
 namespace raywise::app {
 
@@ -125,7 +135,7 @@ void trace_singly(
             rtcOccluded1(scene, &context, &ray);
             answers[at] = ray.tfar < 0;
         } else {
-            RTCRayHit query;
+            RTCRayHit query; // NOLINT(*-member-init): what is read is written
             query.ray = rays[at];
             query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
             query.hit.primID = RTC_INVALID_GEOMETRY_ID;

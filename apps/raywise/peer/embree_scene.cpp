@@ -1,11 +1,18 @@
 #include "embree_state.hpp"
+#include "peer/embree.hpp"
 
 #include <raywise/analysis/stopwatch.hpp>
 #include <raywise/core/error.hpp>
+#include <raywise/geometry/vec.hpp>
+#include <raywise/scene/scene.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <memory>
+#include <string>
 
 namespace raywise::app {
 
@@ -18,7 +25,7 @@ std::string instruction_set(RTCDevice device) {
     if (has(RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED)) return "AVX-512";
     if (!has(RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED)) return "SSE";
 #if defined(__x86_64__)
-    if (__builtin_cpu_supports("avx2") == 0) return "AVX";
+    if (!__builtin_cpu_supports("avx2")) return "AVX";
 #endif
     return "AVX2";
 }

@@ -2,6 +2,13 @@
 #include "embree.hpp"
 
 #include <raywise/core/error.hpp>
+#include <raywise/core/executor.hpp>
+#include <raywise/geometry/ray.hpp>
+#include <raywise/scene/scene.hpp>
+
+#include <cstddef>
+#include <span>
+#include <string>
 
 namespace raywise::app {
 
@@ -35,6 +42,7 @@ EmbreePeer::~EmbreePeer() = default;
 EmbreePeer::EmbreePeer(EmbreePeer&&) noexcept = default;
 EmbreePeer& EmbreePeer::operator=(EmbreePeer&&) noexcept = default;
 
+// NOLINTBEGIN(*-to-static): the same class as with Embree
 double EmbreePeer::build_ms() const {
     return 0;
 }
@@ -42,6 +50,7 @@ double EmbreePeer::build_ms() const {
 std::size_t EmbreePeer::bytes() const {
     return 0;
 }
+// NOLINTEND(*-to-static)
 
 PeerRays::PeerRays(std::span<const Ray>) {
     refuse();

@@ -43,4 +43,4 @@ template <HitMeasure M>
 
 } // namespace raywise
 
-#include <raywise/analysis/estimated_cost.inl.hpp>
+#include <raywise/analysis/estimated_cost.inl.hpp> // IWYU pragma: export

@@ -93,4 +93,4 @@ enum class Culling : std::uint8_t {
 
 } // namespace raywise
 
-#include <raywise/analysis/overlap.inl.hpp>
+#include <raywise/analysis/overlap.inl.hpp> // IWYU pragma: export

@@ -90,4 +90,4 @@ summarize(std::span<const TracedRay> rays, const CostConstants& constants = {});
 
 } // namespace raywise
 
-#include <raywise/analysis/real_cost.inl.hpp>
+#include <raywise/analysis/real_cost.inl.hpp> // IWYU pragma: export

@@ -66,7 +66,7 @@ private:
     static constexpr std::size_t most = std::size_t{3} * BinGrid::most;
 
     [[nodiscard]] static std::size_t at(int bin, int axis) {
-        return static_cast<std::size_t>(bin * 3 + axis);
+        return static_cast<std::size_t>(bin) * 3 + static_cast<std::size_t>(axis);
     }
 
     [[nodiscard]] QuadBox* boxes() { return reinterpret_cast<QuadBox*>(storage_.data()); }

@@ -58,7 +58,7 @@ private:
 
     /// Puts the descendants at `next` and after; returns the slot behind the last.
     template <class Task, HitMeasure M>
-    std::size_t serially(const Task& task, const M& measure, std::size_t next) const {
+    [[nodiscard]] std::size_t serially(const Task& task, const M& measure, std::size_t next) const {
         auto children = divide_(task, measure, serial_executor());
         if (!children) return next;
         auto& [left, right] = *children;

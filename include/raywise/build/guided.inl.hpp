@@ -120,7 +120,7 @@ GuidedTree GuidedBuild<M, P>::run() {
     for (std::size_t i = 0; i < prims_.size(); ++i)
         prims_[i] = to_prim(i);
     const Aabb box = bound(0, prims_.size());
-    const double root_mass = static_cast<double>(static_cast<float>(measure_(box)));
+    const auto root_mass = static_cast<double>(static_cast<float>(measure_(box)));
     const double total = params_.total_mass.value_or(root_mass > 0 ? root_mass : 1);
     measured_ = {Metric::measure, total, params_.faithful};
     surface_ = {Metric::surface, static_cast<double>(half_area(box)), params_.faithful};

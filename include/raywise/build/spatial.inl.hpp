@@ -211,7 +211,7 @@ SpatialSplit SpatialBuild<M>::find_cut(
     if (task.room() == 0 || count <= few_references) return best;
     if (split) {
         const Aabb common = intersect(to_aabb(split->left), to_aabb(split->right));
-        const double root = static_cast<double>(root_mass_[static_cast<std::size_t>(which)]);
+        const auto root = static_cast<double>(root_mass_[static_cast<std::size_t>(which)]);
         const auto shared = static_cast<double>(static_cast<float>(metric(common)));
         if (common.is_empty() || !(shared > params_.least_overlap * root)) return best;
         // Halves of a small node that share but a thin slice gain less than trying costs.

@@ -72,7 +72,7 @@ private:
     static constexpr std::size_t most = std::size_t{3} * SpatialGrid::most;
 
     [[nodiscard]] static std::size_t at(int part, int axis) {
-        return static_cast<std::size_t>(part * 3 + axis);
+        return static_cast<std::size_t>(part) * 3 + static_cast<std::size_t>(axis);
     }
 
     template <int Axis>

@@ -71,10 +71,10 @@ private:
 struct alignas(64) WideNode {
     static constexpr std::size_t width = 8;
 
-    std::array<std::array<std::array<float, width>, 2>, 3>
-        planes; ///< by axis, then lower and upper, then slot
+    std::array<std::array<std::array<float, width>, 2>, 3> planes{
+    }; ///< by axis, then lower and upper, then slot
     std::array<WideRef, width> children;
-    std::array<std::uint32_t, 8> unused; ///< 0
+    std::array<std::uint32_t, 8> unused{}; ///< 0
 
     void set(std::size_t slot, const Aabb& box, WideRef child) {
         for (int axis = 0; axis < 3; ++axis) {

@@ -22,8 +22,8 @@ public:
         , surface_factor_(factor(surface_share, half_area(root))) {}
 
     [[nodiscard]] float operator()(const Aabb& box) const {
-        const double mass = static_cast<double>(static_cast<float>(measure_(box)));
-        const double area = static_cast<double>(half_area(box));
+        const auto mass = static_cast<double>(static_cast<float>(measure_(box)));
+        const auto area = static_cast<double>(half_area(box));
         return static_cast<float>(mass * measure_factor_ + area * surface_factor_);
     }
 

@@ -108,4 +108,4 @@ private:
 
 } // namespace raywise
 
-#include <raywise/geometry/ray_triangle.inl.hpp>
+#include <raywise/geometry/ray_triangle.inl.hpp> // IWYU pragma: export

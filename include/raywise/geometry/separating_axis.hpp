@@ -41,4 +41,4 @@ template <ConvexBody A, ConvexBody B>
 
 } // namespace raywise
 
-#include <raywise/geometry/separating_axis.inl.hpp>
+#include <raywise/geometry/separating_axis.inl.hpp> // IWYU pragma: export

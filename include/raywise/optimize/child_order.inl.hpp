@@ -5,10 +5,10 @@
 
 namespace raywise {
 
-/// Share of a parent's rays that meet a child, in [0, 1]; of a parent without mass: all.
-[[nodiscard]] inline double share_of(float child, float parent) {
-    if (!(parent > 0)) return 1;
-    return std::min(1.0, static_cast<double>(child) / static_cast<double>(parent));
+/// Share of the rays of a whole that meet a part of it, in [0, 1]; of a whole without mass: all.
+[[nodiscard]] inline double share_of(float part, float whole) {
+    if (!(whole > 0)) return 1;
+    return std::min(1.0, static_cast<double>(part) / static_cast<double>(whole));
 }
 
 template <HitMeasure M>

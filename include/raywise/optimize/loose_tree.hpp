@@ -34,7 +34,7 @@ public:
             entry.node = tree.nodes[i];
             entry.mass = masses[i];
             if (entry.node.is_leaf()) continue;
-            const Index left = static_cast<Index>(entry.node.left());
+            const auto left = static_cast<Index>(entry.node.left());
             entries_[left].parent = static_cast<Index>(i);
             entries_[left + 1].parent = static_cast<Index>(i);
             fit(static_cast<Index>(i));
@@ -74,7 +74,7 @@ private:
     };
 
     struct Change {
-        Index at;
+        Index at = 0;
         Entry before;
     };
 

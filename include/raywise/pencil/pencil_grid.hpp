@@ -45,6 +45,8 @@ public:
 
     explicit PencilGrid(std::unique_ptr<Data> data);
     ~PencilGrid();
+    PencilGrid(const PencilGrid&) = delete;
+    PencilGrid& operator=(const PencilGrid&) = delete;
     PencilGrid(PencilGrid&&) noexcept;
     PencilGrid& operator=(PencilGrid&&) noexcept;
 

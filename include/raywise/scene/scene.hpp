@@ -95,6 +95,10 @@ struct Scene {
 /// The number of triangles of exactly zero area.
 [[nodiscard]] std::size_t count_degenerate(const Scene& scene);
 
+/// The number of triangles whose corners are those of an earlier one, in any order; -0 counts as 0.
+/// Takes O(n log n) time and 36 bytes for each triangle.
+[[nodiscard]] std::size_t count_duplicates(const Scene& scene);
+
 /// Throws Error, naming the first offender, unless every coordinate is finite and within
 /// `max_coordinate`, every index names a vertex, groups are ascending, disjoint and within the
 /// triangles, the counts are within `max_triangles`, and lights and cameras keep to their ranges.

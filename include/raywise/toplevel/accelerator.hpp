@@ -205,7 +205,7 @@ private:
 
     /// An area with a grid, and what its rays share.
     struct Gridded {
-        AreaId area;
+        AreaId area{};
         Pencil pencil;
     };
 

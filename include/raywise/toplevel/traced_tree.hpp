@@ -48,7 +48,7 @@ public:
     [[nodiscard]] const WideBvh* wide() const { return std::get_if<WideBvh>(&tree_); }
 
     [[nodiscard]] bool is_empty() const {
-        return wide() ? wide()->is_empty() : binary()->tree.is_empty();
+        return wide() != nullptr ? wide()->is_empty() : binary()->tree.is_empty();
     }
 
     /// Bytes of the nodes, and of the triangles.

@@ -32,4 +32,4 @@ void closest_hits(
 
 } // namespace raywise
 
-#include <raywise/trace/closest_hit.inl.hpp>
+#include <raywise/trace/closest_hit.inl.hpp> // IWYU pragma: export

@@ -37,10 +37,8 @@ public:
     static Face parallel(Vec3 direction, Vec3 origin, bool reversed) {
         const int z = dominant_axis(direction);
         Face face(origin, z, direction[z] < 0 ? -1 : 1, reversed);
-        face.slope_x_ =
-            face.difference(direction, face.x_, 0) / face.difference(direction, face.z_, 0);
-        face.slope_y_ =
-            face.difference(direction, face.y_, 0) / face.difference(direction, face.z_, 0);
+        face.slope_x_ = difference(direction, face.x_, 0) / difference(direction, face.z_, 0);
+        face.slope_y_ = difference(direction, face.y_, 0) / difference(direction, face.z_, 0);
         return face;
     }
 

@@ -1,6 +1,9 @@
 #include "geometry/detail/expansion.hpp"
 #include "pencil/inversion/facing.hpp"
 
+#include <raywise/geometry/triangle.hpp>
+#include <raywise/geometry/vec.hpp>
+
 namespace raywise::detail {
 
 int exact_facing(Vec3 direction, const Triangle& triangle) {

@@ -1,10 +1,22 @@
+#include "pencil/inversion/extremes.hpp"
+#include "pencil/inversion/face.hpp"
 #include "pencil/inversion/ray_tiles.hpp"
 
 #include <raywise/core/error.hpp>
+#include <raywise/core/executor.hpp>
+#include <raywise/core/ids.hpp>
+#include <raywise/core/large_buffer.hpp>
+#include <raywise/geometry/ray.hpp>
+#include <raywise/geometry/vec.hpp>
+#include <raywise/pencil/pencil.hpp>
 
-#include <array>
+#include <algorithm>
+#include <atomic>
 #include <cmath>
-#include <memory>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
 
 namespace raywise::detail {
 
@@ -14,7 +26,6 @@ constexpr std::size_t rays_per_tile = 1024;
 constexpr std::size_t rays_per_bin = 16;
 constexpr std::size_t sample_size = 1024;
 constexpr std::uint32_t no_tile = 0xFFFFFFFU;
-constexpr float infinity = std::numeric_limits<float>::infinity();
 
 /// A ray on its way from the batch to its slot.
 struct SeenRay {
@@ -211,7 +222,7 @@ std::size_t most_tiles(std::size_t rays) {
 }
 
 std::size_t most_slots(std::size_t rays) {
-    return rays + 2 * tile_alignment * most_tiles(rays);
+    return rays + std::size_t{2} * tile_alignment * most_tiles(rays);
 }
 
 std::size_t most_bin_starts(std::size_t rays) {
@@ -258,7 +269,7 @@ void RayTiles::sort(
     const RunningOf running_of(pencil);
     const LargeBuffer<Placed> places(rays.size());
     // At most 32 chunks, so that their counts stay few.
-    const std::size_t chunk = greater<std::size_t>(16384, rays.size() / 32 + 1);
+    const auto chunk = greater<std::size_t>(16384, rays.size() / 32 + 1);
     std::vector<Share> shares((rays.size() + chunk - 1) / chunk);
     executor.for_each_chunk(rays.size(), chunk, [&](std::size_t begin, std::size_t end) {
         Share& share = shares[begin / chunk];
@@ -363,7 +374,7 @@ std::size_t RayTiles::most_bytes(std::size_t rays) {
     return rays * (sizeof(RayTiles::Placed) + sizeof(SeenRay)) +
            most_slots(rays) * (6 + 2) * sizeof(float) +
            most_bin_starts(rays) * sizeof(std::uint32_t) +
-           most_tiles(rays) * (sizeof(Tile) + 33 * 4);
+           most_tiles(rays) * (sizeof(Tile) + 33 * sizeof(std::uint32_t));
 }
 
 } // namespace raywise::detail

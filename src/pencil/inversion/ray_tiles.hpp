@@ -20,6 +20,7 @@
 namespace raywise::detail {
 
 inline constexpr float unit_roundoff = 0x1p-24F;
+inline constexpr float infinity = std::numeric_limits<float>::infinity();
 
 /// Vectors may be read, not written, up to this many slots beyond the rays of a tile.
 inline constexpr std::uint32_t tile_alignment = 16;
@@ -87,8 +88,8 @@ struct alignas(64) Tile {
     float per_u = 0, per_v = 0;
     float half_u = 0, half_v = 0; ///< greatest coordinates by magnitude
     /// Bounds of the intervals of the rays kept.
-    std::atomic<float> near{std::numeric_limits<float>::infinity()};
-    std::atomic<float> far{-std::numeric_limits<float>::infinity()};
+    std::atomic<float> near{infinity};
+    std::atomic<float> far{-infinity};
     float start = 0; ///< greatest depth by magnitude at which a ray starts
     float scale = 0; ///< the same, more by FaceRay::tiny
     std::atomic<std::uint32_t> undecided{0};

@@ -133,12 +133,5 @@ TEST(MakeWorkload, WhatCannotBeMadeIsRefused) {
     refused(courtyard(), {.offset = -1});
 }
 
-TEST(RayClasses, HaveNamesThatDiffer) {
-    std::set<std::string_view> names;
-    for (const RayClass rays : all_ray_classes())
-        EXPECT_TRUE(names.insert(name_of(rays)).second);
-    EXPECT_EQ(names.size(), 8U);
-}
-
 } // namespace
 } // namespace raywise

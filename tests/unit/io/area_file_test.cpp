@@ -177,7 +177,7 @@ TEST_F(LoadAreas, FaultsAreNamedWithFileAndArea) {
     EXPECT_THAT(refusal(sun + "," + sun), HasSubstr("two areas are named 'sun'"));
     EXPECT_THAT(
         refusal(R"({"name": "a", "name": "b", "kind": "parallel", "direction": [0, 0, 1]})"),
-        HasSubstr("stands twice")
+        HasSubstr("key 'name' is repeated")
     );
     EXPECT_THAT(
         refusal(R"({"name": "a", "kind": "parallel", "direction": [0, 0, 1e999]})"),

@@ -38,6 +38,7 @@ TEST(Scene, WithoutTrianglesHasEmptyBoundsAndIsValid) {
     const Scene scene;
     EXPECT_TRUE(bounds(scene).is_empty());
     EXPECT_EQ(count_degenerate(scene), 0U);
+    EXPECT_EQ(count_duplicates(scene), 0U);
     EXPECT_TRUE(triangle_boxes(scene).empty());
     EXPECT_NO_THROW(validate(scene));
 }
@@ -97,6 +98,20 @@ TEST(IsDegenerate, SeesAreasThatFloatAndDoubleArithmeticLose) {
          {-max_coordinate, -max_coordinate, 0},
          {max_coordinate / 3, max_coordinate / 3, tiny}}
     ));
+}
+
+TEST(CountDuplicates, CountsTheSameCornersInAnyOrderByTheirPlaces) {
+    Scene scene;
+    scene.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-0.0F, 0, 0}, {0, 0, 1}};
+    scene.triangles = {{0, 1, 2}, {0, 1, 4}};
+    EXPECT_EQ(count_duplicates(scene), 0U);
+    scene.triangles.push_back({2, 1, 0}); // turned over
+    scene.triangles.push_back({1, 2, 3}); // through a copy of a vertex, of another sign
+    EXPECT_EQ(count_duplicates(scene), 2U);
+    scene.triangles.push_back({0, 0, 0});
+    EXPECT_EQ(count_duplicates(scene), 2U);
+    scene.triangles.push_back({3, 0, 0});
+    EXPECT_EQ(count_duplicates(scene), 3U);
 }
 
 TEST(IsDegenerate, AgreesWithIntegerArithmeticOnSmallGrids) {

@@ -25,14 +25,4 @@ struct AreaResult {
 /// Builds every variant over the area's triangles, draws the area's rays, verifies, counts, times.
 [[nodiscard]] AreaResult compare_area(const AreaInput& input);
 
-/// The variant that the others are measured against.
-[[nodiscard]] Variant baseline_of(const CompareParams& params);
-
-/// How the global tree is built.
-[[nodiscard]] Heuristic global_heuristic(const CompareParams& params);
-
-/// The area as the run sees it: for faithful runs, radial areas with a window emit by yaw and
-/// pitch.
-[[nodiscard]] InfluenceArea prepared(InfluenceArea area, const CompareParams& params);
-
 } // namespace raywise::detail

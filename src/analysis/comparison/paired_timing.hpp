@@ -49,6 +49,7 @@ inline std::vector<double> time_interleaved(
         }
     }
     std::vector<double> medians;
+    medians.reserve(times.size());
     for (const std::vector<double>& of_pass : times)
         medians.push_back(median(of_pass));
     return medians;
