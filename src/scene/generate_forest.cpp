@@ -101,8 +101,10 @@ void add_forest(MeshBuilder& mesh, int trees, std::uint64_t seed) {
     mesh.begin_group("trees");
     for (int i = 0; i < trees; ++i) {
         Rng rng(seed, static_cast<std::uint64_t>(i));
-        const double x = (i % side + rng.uniform_double()) * spacing;
-        const double z = (i / side + rng.uniform_double()) * spacing;
+        const int column = i % side;
+        const int row = i / side;
+        const double x = (column + rng.uniform_double()) * spacing;
+        const double z = (row + rng.uniform_double()) * spacing;
         add_tree(mesh, {x, ground_height(x, z), z}, rng);
     }
     mesh.end_group();
