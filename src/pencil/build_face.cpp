@@ -1,12 +1,28 @@
 #include "pencil/build_face.hpp"
+#include "pencil/cell_builder.hpp"
+#include "pencil/edge_lines.hpp"
 #include "pencil/face_map.hpp"
+#include "pencil/face_pieces.hpp"
+#include "pencil/footprint.hpp"
+#include "pencil/grid_data.hpp"
+#include "pencil/piece.hpp"
 #include "pencil/raster.hpp"
+#include "pencil/records.hpp"
+
+#include <raywise/core/executor.hpp>
+#include <raywise/geometry/vec.hpp>
+#include <raywise/pencil/pencil_grid_params.hpp>
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
-#include <numeric>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
 
 namespace raywise::pencil_detail {
 

@@ -3,17 +3,23 @@
 #include "pencil/face_pieces.hpp"
 #include "pencil/grid_data.hpp"
 #include "pencil/kernels.hpp"
+#include "pencil/records.hpp"
 
 #include <raywise/core/error.hpp>
+#include <raywise/core/executor.hpp>
+#include <raywise/geometry/triangle_view.hpp>
+#include <raywise/geometry/vec.hpp>
 #include <raywise/pencil/pencil_grid.hpp>
+#include <raywise/pencil/pencil_grid_params.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <limits>
 #include <memory>
-#include <span>
 #include <utility>
 #include <vector>
 

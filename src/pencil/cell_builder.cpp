@@ -1,13 +1,22 @@
 #include "pencil/cell_builder.hpp"
+#include "pencil/edge_lines.hpp"
 #include "pencil/face_map.hpp"
+#include "pencil/footprint.hpp"
+#include "pencil/grid_data.hpp"
+#include "pencil/piece.hpp"
 
 #include <raywise/core/error.hpp>
+#include <raywise/core/ids.hpp>
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <limits>
+#include <span>
+#include <vector>
 
 namespace raywise::pencil_detail {
 
@@ -138,7 +147,8 @@ bool CellBuilder::split(
             for (auto column = (place.least_u - window.first_u) >> child_shift;
                  column <= last_column;
                  ++column) {
-                lists[static_cast<std::size_t>(row * 4 + column)].push_back(reference.piece);
+                lists[static_cast<std::size_t>(row) * 4 + static_cast<std::size_t>(column)]
+                    .push_back(reference.piece);
                 ++total;
             }
     }

@@ -43,13 +43,13 @@ public:
 
 private:
     struct Reference {
-        Footprint place;
+        Footprint place{};
         DepthPlane plane;
-        std::int32_t least;    ///< depth, in units
-        std::int32_t greatest; ///< depth, in units
+        std::int32_t least = 0;    ///< depth, in units
+        std::int32_t greatest = 0; ///< depth, in units
         EdgeRows edges;
-        std::uint32_t piece;
-        PrimId prim;
+        std::uint32_t piece = 0;
+        PrimId prim = no_prim;
     };
 
     /// A reference's depths as a list has them.

@@ -1,9 +1,17 @@
 #include "pencil/edge_lines.hpp"
 #include "pencil/face_map.hpp"
+#include "pencil/footprint.hpp"
+#include "pencil/grid_data.hpp"
+#include "pencil/piece.hpp"
+#include "pencil/records.hpp"
+
+#include <raywise/geometry/vec.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 
 namespace raywise::pencil_detail {

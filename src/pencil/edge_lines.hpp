@@ -15,8 +15,8 @@ namespace raywise::pencil_detail {
 
 /// Rows edge_u, edge_v, edge_at of the three edges, one edge after another.
 struct EdgeRows {
-    std::array<std::int16_t, 9> values;
-    bool is_missed; ///< whether no ray of the cell meets the triangle: nothing to list
+    std::array<std::int16_t, 9> values{};
+    bool is_missed = false; ///< whether no ray of the cell meets the triangle: nothing to list
 };
 
 /// Where that is known: at + u X + v Y, in units, for the place (X, Y) of a query in half cells

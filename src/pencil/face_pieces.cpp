@@ -1,10 +1,18 @@
 #include "pencil/face_pieces.hpp"
+#include "pencil/piece.hpp"
+#include "pencil/records.hpp"
+
+#include <raywise/core/executor.hpp>
+#include <raywise/core/ids.hpp>
+#include <raywise/geometry/vec.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <vector>
 
 namespace raywise::pencil_detail {
 

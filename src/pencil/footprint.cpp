@@ -1,8 +1,11 @@
 #include "pencil/footprint.hpp"
+#include "pencil/piece.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <utility>
 
 // A ray whose place a query puts at p passes the piece within margin - 1 of p, and the snapped

@@ -4,9 +4,15 @@
 #include "pencil/inversion/ray_tiles.hpp"
 
 #include <raywise/core/error.hpp>
+#include <raywise/core/executor.hpp>
+#include <raywise/core/ids.hpp>
+#include <raywise/geometry/ray.hpp>
 #include <raywise/geometry/ray_triangle.hpp>
+#include <raywise/pencil/pencil.hpp>
 
 #include <algorithm>
+#include <cstddef>
+#include <span>
 
 namespace raywise {
 

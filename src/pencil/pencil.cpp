@@ -1,6 +1,7 @@
 #include <raywise/pencil/pencil.hpp>
 
 #include <raywise/core/error.hpp>
+#include <raywise/geometry/vec.hpp>
 
 namespace raywise {
 

@@ -4,11 +4,23 @@
 #include "pencil/kernels.hpp"
 
 #include <raywise/core/error.hpp>
+#include <raywise/core/executor.hpp>
+#include <raywise/core/function_ref.hpp>
 #include <raywise/core/hash.hpp>
+#include <raywise/core/ids.hpp>
+#include <raywise/geometry/ray.hpp>
+#include <raywise/geometry/vec.hpp>
+#include <raywise/pencil/pencil.hpp>
+#include <raywise/pencil/pencil_grid_params.hpp>
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -63,7 +75,7 @@ void PencilGrid::any_hits(
     const Executor& executor
 ) const {
     executor.for_each_chunk(rays.size(), batch_chunk, [&](std::size_t begin, std::size_t end) {
-        std::array<Verdict, batch_chunk> verdicts;
+        std::array<Verdict, batch_chunk> verdicts; // NOLINT(*-member-init): written by the kernel
         data_->kernels->any_hit_batch(*data_, rays.data() + begin, end - begin, verdicts.data());
         for (std::size_t i = begin; i < end; ++i) {
             const Verdict verdict = verdicts[i - begin];
@@ -79,7 +91,7 @@ void PencilGrid::closest_hits(
     const Executor& executor
 ) const {
     executor.for_each_chunk(rays.size(), batch_chunk, [&](std::size_t begin, std::size_t end) {
-        std::array<Verdict, batch_chunk> verdicts;
+        std::array<Verdict, batch_chunk> verdicts; // NOLINT(*-member-init): written by the kernel
         std::fill(&hits[begin], &hits[begin] + (end - begin), Hit{});
         data_->kernels->closest_hit_batch(
             *data_, rays.data() + begin, end - begin, hits.data() + begin, verdicts.data()
@@ -98,7 +110,7 @@ void PencilGrid::occluded(
     const Executor& executor
 ) const {
     executor.for_each_chunk(points.size(), batch_chunk, [&](std::size_t begin, std::size_t end) {
-        std::array<Verdict, batch_chunk> verdicts;
+        std::array<Verdict, batch_chunk> verdicts; // NOLINT(*-member-init): written by the kernel
         const PointBatch batch{
             points.data() + begin,
             excluded.empty() ? nullptr : excluded.data() + begin,

@@ -1,7 +1,16 @@
 #include "pencil/records.hpp"
 
+#include <raywise/core/executor.hpp>
+#include <raywise/core/ids.hpp>
+#include <raywise/geometry/aabb.hpp>
+#include <raywise/geometry/triangle.hpp>
+#include <raywise/geometry/triangle_view.hpp>
+#include <raywise/geometry/vec.hpp>
+
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <vector>
 
 namespace raywise::pencil_detail {
 
@@ -22,9 +31,9 @@ Records::Records(const TriangleView& triangles, const Executor& executor)
             const Triangle t = triangles[to_prim(i)];
             float* to = values_.get() + i * floats;
             for (int axis = 0; axis < 3; ++axis) {
-                to[3 * axis] = t.v0[axis];
-                to[3 * axis + 1] = t.v1[axis];
-                to[3 * axis + 2] = t.v2[axis];
+                *to++ = t.v0[axis];
+                *to++ = t.v1[axis];
+                *to++ = t.v2[axis];
             }
             if (!is_finite(t.v0) || !is_finite(t.v1) || !is_finite(t.v2)) continue;
             for (const Vec3& vertex : {t.v0, t.v1, t.v2})

@@ -2,15 +2,20 @@
 #include "pencil/grid_data.hpp"
 #include "pencil/kernels.hpp"
 #include "pencil/query/counts.hpp"
-#include "pencil/query/sharp_filter.hpp"
 
+#include <raywise/core/function_ref.hpp>
+#include <raywise/core/ids.hpp>
+#include <raywise/geometry/ray.hpp>
 #include <raywise/geometry/ray_triangle.hpp>
+#include <raywise/geometry/vec.hpp>
+#include <raywise/pencil/pencil.hpp>
+#include <raywise/pencil/pencil_grid.hpp>
+#include <raywise/pencil/pencil_grid_params.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <span>
 #include <type_traits>
@@ -35,8 +40,6 @@
 HWY_BEFORE_NAMESPACE();
 
 namespace raywise::pencil_detail::HWY_NAMESPACE {
-
-namespace hn = hwy::HWY_NAMESPACE;
 
 template <Heading heading>
 Verdict all_hits_along(const Grid& grid, const Ray& ray, FunctionRef<void(const Hit&)> visit) {
@@ -91,7 +94,7 @@ HWY_INLINE Verdict ask_along(const Grid& grid, const Ray& ray, const Ask& ask) {
     return is_valid(ray) ? Verdict::unknown : Verdict::miss;
 }
 
-Verdict Occluded(const Grid& grid, const Vec3& point, float t_min, PrimId excluded) {
+Verdict occluded(const Grid& grid, const Vec3& point, float t_min, PrimId excluded) {
     const auto ray = [=, at = &grid, from = &point] {
         return at->pencil.shadow_ray(*from, t_min, excluded);
     };
@@ -107,11 +110,11 @@ HWY_INLINE Verdict any_hit_of(const Grid& grid, const Ray& ray, Count count) {
     });
 }
 
-Verdict AnyHit(const Grid& grid, const Ray& ray) {
+Verdict any_hit(const Grid& grid, const Ray& ray) {
     return any_hit_of(grid, ray, NoCounts{});
 }
 
-Verdict AnyHitCounted(const Grid& grid, const Ray& ray, PencilGridCounts& counts) {
+Verdict any_hit_counted(const Grid& grid, const Ray& ray, PencilGridCounts& counts) {
     return any_hit_of(grid, ray, Counts{&counts});
 }
 
@@ -124,15 +127,15 @@ HWY_INLINE Verdict closest_hit_of(const Grid& grid, const Ray& ray, Hit& hit, Co
     return verdict;
 }
 
-Verdict ClosestHit(const Grid& grid, const Ray& ray, Hit& hit) {
+Verdict closest_hit(const Grid& grid, const Ray& ray, Hit& hit) {
     return closest_hit_of(grid, ray, hit, NoCounts{});
 }
 
-Verdict ClosestHitCounted(const Grid& grid, const Ray& ray, Hit& hit, PencilGridCounts& counts) {
+Verdict closest_hit_counted(const Grid& grid, const Ray& ray, Hit& hit, PencilGridCounts& counts) {
     return closest_hit_of(grid, ray, hit, Counts{&counts});
 }
 
-Verdict AllHits(const Grid& grid, const Ray& ray, FunctionRef<void(const Hit&)> visit) {
+Verdict all_hits(const Grid& grid, const Ray& ray, FunctionRef<void(const Hit&)> visit) {
     return ask_along(grid, ray, [&](auto along) HWY_ATTR {
         return all_hits_along<along>(grid, ray, visit);
     });
@@ -146,7 +149,7 @@ HWY_INLINE void put(Together& rays, std::size_t i, Vec3 place, float t, PrimId e
     rays.excluded[i] = excluded;
 }
 
-void OccludedBatch(const Grid& grid, const PointBatch& batch, Verdict* verdicts) {
+void occluded_batch(const Grid& grid, const PointBatch& batch, Verdict* verdicts) {
     const auto excluded = [&](std::size_t i) {
         return batch.excluded == nullptr ? no_prim : batch.excluded[i];
     };
@@ -170,7 +173,7 @@ void OccludedBatch(const Grid& grid, const PointBatch& batch, Verdict* verdicts)
     }
 }
 
-void AnyHitBatch(const Grid& grid, const Ray* batch, std::size_t batch_size, Verdict* verdicts) {
+void any_hit_batch(const Grid& grid, const Ray* batch, std::size_t batch_size, Verdict* verdicts) {
     const float t_max = shadow_t_max(grid);
     Together rays{};
     for (std::size_t first = 0; first < batch_size; first += together) {
@@ -192,7 +195,7 @@ void AnyHitBatch(const Grid& grid, const Ray* batch, std::size_t batch_size, Ver
     }
 }
 
-void ClosestHitBatch(
+void closest_hit_batch(
     const Grid& grid,
     const Ray* batch,
     std::size_t batch_size,
@@ -220,18 +223,18 @@ void ClosestHitBatch(
 
 const Kernels kernels{
     hwy::TargetName(HWY_TARGET),
-    Occluded,
-    AnyHit,
-    AnyHitCounted,
-    ClosestHit,
-    ClosestHitCounted,
-    AllHits,
-    OccludedBatch,
-    AnyHitBatch,
-    ClosestHitBatch
+    occluded,
+    any_hit,
+    any_hit_counted,
+    closest_hit,
+    closest_hit_counted,
+    all_hits,
+    occluded_batch,
+    any_hit_batch,
+    closest_hit_batch
 };
 
-const Kernels* GetKernels() {
+const Kernels* get_kernels() {
     return &kernels;
 }
 
@@ -243,7 +246,7 @@ HWY_AFTER_NAMESPACE();
 
 namespace raywise::pencil_detail {
 
-HWY_EXPORT(GetKernels);
+HWY_EXPORT(get_kernels);
 
 namespace {
 
@@ -252,7 +255,7 @@ std::vector<const Kernels*> collect_kernels() {
     for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
         hwy::SetSupportedTargetsForTest(target);
         hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-        all.push_back(HWY_DYNAMIC_DISPATCH(GetKernels)());
+        all.push_back(HWY_DYNAMIC_DISPATCH(get_kernels)());
     }
     hwy::SetSupportedTargetsForTest(0);
     hwy::GetChosenTarget().Update(hwy::SupportedTargets());

@@ -69,7 +69,7 @@ HWY_INLINE V product(V a, V b) {
 }
 
 HWY_INLINE std::int32_t number_at(const std::byte* at) {
-    std::int32_t number; // NOLINT(*-member-init): written next
+    std::int32_t number = 0;
     std::memcpy(&number, at, sizeof number);
     return number;
 }
@@ -210,7 +210,7 @@ struct Walk {
     }
 
     [[nodiscard]] HWY_INLINE PrimId id(std::uint32_t bits) const {
-        PrimId id; // NOLINT(*-member-init): written next
+        PrimId id{};
         std::memcpy(
             &id,
             at + 2 * prim_row * padded(size()) +
@@ -234,7 +234,7 @@ struct Walk {
 
 HWY_INLINE Walk walk(const Grid& grid, const Leaf& leaf, const Spot& spot) {
     const std::byte* const at = grid.lists + std::size_t{leaf.cell->link} * 16;
-    ListHead head;
+    ListHead head{};
     std::memcpy(&head, at, sizeof head);
     // A step is a unit at least.
     const std::int32_t before = spot.deepest() - spot.sure() + depth_doubt;

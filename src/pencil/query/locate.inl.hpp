@@ -177,7 +177,8 @@ HWY_INLINE Where locate(const Grid& grid, const Segment& ray, Spot& spot) {
         is_whole = start + static_cast<double>(ray.t_min) * speed * (1 + 0x1p-20) < map.front;
     }
     spot.units[3] = is_whole ? spot.units[3] - rounding : nothing_sure;
-    if (heading == Heading::to_emitter && !is_parallel && static_cast<double>(ray.t_min) > map.most_t) [[unlikely]] {
+    if (heading == Heading::to_emitter && !is_parallel &&
+        static_cast<double>(ray.t_min) > map.most_t) [[unlikely]] {
         spot.units[2] = deepest;
         spot.units[3] = nothing_sure;
     }

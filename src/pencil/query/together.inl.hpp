@@ -47,7 +47,7 @@ HWY_INLINE void any_hit_together(
     const RayOf& ray_of,
     Verdict* verdicts
 ) {
-    std::array<Leaf, together> leaves;
+    std::array<Leaf, together> leaves; // NOLINT(*-member-init): written before they are read
     std::array<std::uint8_t, together> open{};
     locate_shadows(grid, count, shadow_t_max(grid), rays);
     std::size_t left = 0;
@@ -148,7 +148,7 @@ HWY_INLINE void closest_hit_together(
     Verdict* verdicts
 ) {
     constexpr auto heading = Heading::from_emitter;
-    std::array<Leaf, together> leaves;
+    std::array<Leaf, together> leaves; // NOLINT(*-member-init): written before they are read
     std::array<std::uint8_t, together> open{}, sure{};
     std::array<PrimId, together> prims{};
     locate_from_apex(grid, count, rays);

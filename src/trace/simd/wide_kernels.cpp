@@ -286,8 +286,10 @@ bool any(const WideBvh& tree, const Ray& ray, Observer& seen) {
 template <TraceMode mode>
 void all(const WideBvh& tree, const Ray& ray, FunctionRef<void(const Hit&)> visit) {
     WideRay wide; // NOLINT(*-member-init): prepare fills it
-    if (!prepare(ray, tree, wide)) [[unlikely]]
-        return all_scalar(tree, ray, visit);
+    if (!prepare(ray, tree, wide)) [[unlikely]] {
+        all_scalar(tree, ray, visit);
+        return;
+    }
     Silent seen;
     traverse<false>(tree, wide, seen, [&](const TriangleBlock& block, float&) HWY_ATTR {
         const Candidates found = meet_block<mode>(wide, block, ray.t_max);
