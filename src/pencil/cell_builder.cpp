@@ -8,6 +8,8 @@
 #include <raywise/core/error.hpp>
 #include <raywise/core/ids.hpp>
 
+#include <hwy/cache_control.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -27,6 +29,9 @@ constexpr std::int32_t never = std::numeric_limits<std::int32_t>::max();
 /// Splitting pays when the children together have less than so many times the references: longer
 /// triangles would be listed again and again.
 constexpr double worthwhile_growth = 2.5;
+
+/// Pieces of a cell lie anywhere in memory, and so do their triangles: so many are on their way.
+constexpr std::size_t ahead = 8;
 
 /// The least shift >= 0, or one more, with which limit * 2^shift >= number: greater than any that
 /// is used for what is too large or no number.
@@ -50,8 +55,10 @@ Cell CellBuilder::build(std::span<const std::uint32_t> pieces, const Window& win
     const std::int32_t cover = cover_of(pieces, window);
     std::vector<Reference>& references = references_[level_of(shift)];
     references.clear();
-    for (const std::uint32_t index : pieces)
-        add_reference(references, index, window, cover);
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        if (i + ahead < pieces.size()) edges_.prefetch(pieces_[pieces[i + ahead]]);
+        add_reference(references, pieces[i], window, cover);
+    }
     Cell cell;
     if (references.empty()) {
         ++statistics_.empty;
@@ -83,8 +90,9 @@ CellBuilder::cover_of(std::span<const std::uint32_t> pieces, const Window& windo
     std::int32_t first = never;
     std::int32_t second = never;
     PrimId first_prim = no_prim;
-    for (const std::uint32_t index : pieces) {
-        const Piece& piece = pieces_[index];
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        if (i + ahead < pieces.size()) hwy::Prefetch(&pieces_[pieces[i + ahead]]);
+        const Piece& piece = pieces_[pieces[i]];
         if (!fills(piece, window)) continue;
         const std::int32_t depth = greatest_depth(footprint(piece, window).greatest_key);
         if (piece.prim == first_prim) {

@@ -46,6 +46,9 @@ public:
         double rounding
     );
 
+    /// Asks for what `see` reads of the piece's triangle.
+    void prefetch(const Piece& piece) const { records_.prefetch(piece.prim); }
+
     /// Of the triangle whose piece has these bounds in the cell `window`.
     [[nodiscard]] SeenTriangle
     see(const Piece& piece, const Footprint& bounds, const Window& window) const;

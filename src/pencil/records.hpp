@@ -8,6 +8,8 @@
 #include <raywise/geometry/triangle_view.hpp>
 #include <raywise/geometry/vec.hpp>
 
+#include <hwy/cache_control.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -34,6 +36,13 @@ public:
     [[nodiscard]] Vec3d vertex(PrimId id, std::size_t corner) const {
         const float* record = values_.get() + to_index(id) * floats;
         return to_double(Vec3{record[corner], record[3 + corner], record[6 + corner]});
+    }
+
+    /// Asks for a triangle ahead of its use.
+    void prefetch(PrimId id) const {
+        const float* record = values_.get() + to_index(id) * floats;
+        hwy::Prefetch(record);
+        hwy::Prefetch(record + floats - 1);
     }
 
 private:
