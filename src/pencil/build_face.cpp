@@ -116,7 +116,7 @@ double scale(
     const double deep = std::max({greatest_key - least_key, largest * 0x1p-14, 0x1p-90});
     map.depth_scale = (deepest - shallowest - 8) / deep;
     map.depth_offset = shallowest - least_key * map.depth_scale;
-    map.depth_slack = 1 + 0x1p-148 * static_cast<double>(map.speed) * map.depth_scale;
+    map.depth_slack = 4 + 0x1p-148 * static_cast<double>(map.speed) * map.depth_scale;
     map.front = is_radial ? -1 / least_key : least_key;
     // t / (1 - t) for the share t of a ray.
     const double strays = stray_share * std::max(map.scale_u, map.scale_v);

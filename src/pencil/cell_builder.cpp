@@ -340,7 +340,7 @@ CellBuilder::DepthRows CellBuilder::depth_rows(const Reference& reference) const
     const double least = piece.is_near ? 0 : reference.least;
     const double greatest = piece.is_near ? deepest : reference.greatest;
     const double middle = std::floor(0.5 * (least + greatest));
-    const unsigned level_shift = shift_to(depth_doubt, greatest - middle);
+    const unsigned level_shift = std::max(least_shift, shift_to(depth_doubt, greatest - middle));
     const DepthRows level{
         0, 0, static_cast<std::int32_t>(middle), static_cast<std::uint8_t>(level_shift)
     };
@@ -350,7 +350,7 @@ CellBuilder::DepthRows CellBuilder::depth_rows(const Reference& reference) const
     const double steep = std::abs(plane.u) + std::abs(plane.v);
     // Rounding a slope takes off at most 1/2, rounding its product with a place as much: 2 in all.
     const unsigned shift =
-        std::max(shift_to(32000, steep), shift_to(depth_doubt - 2, plane.error + 1));
+        std::max({least_shift, shift_to(32000, steep), shift_to(depth_doubt - 2, plane.error + 1)});
     // Far from the triangle, its plane may be anywhere.
     if (shift >= level_shift || !(plane.at > -0x1p30 && plane.at < 0x1.fp30)) return level;
     const double steps = 1 / power_of_2(shift);

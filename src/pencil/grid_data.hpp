@@ -87,6 +87,7 @@ enum Row : std::size_t {
 
 inline constexpr int edge_doubt = 8;
 inline constexpr int depth_doubt = 3;
+inline constexpr unsigned least_shift = 4; ///< of depths: finer ones would tell nothing
 
 inline constexpr std::size_t chunk_size = 32;
 
@@ -129,7 +130,7 @@ struct FaceMap {
     double most_t = 0; ///< rays toward an apex that begin later may stray from their place by more
                        ///< than a quarter unit before they begin
     float whole_t = 1; ///< a ray toward the emitter with such a t_max passes all geometry
-    double depth_slack = 1; ///< units that a rounded t may be off, beside a share of it
+    double depth_slack = 4; ///< units that a rounded t may be off, beside a share of it
 
     // The same map for queries, four numbers at a time: u, v, and units of depth twice, more and
     // less than what they are off. Parallel: the sum of the columns for x, y, z and 1, each times

@@ -236,8 +236,8 @@ HWY_INLINE Walk walk(const Grid& grid, const Leaf& leaf, const Spot& spot) {
     const std::byte* const at = grid.lists + std::size_t{leaf.cell->link} * 16;
     ListHead head{};
     std::memcpy(&head, at, sizeof head);
-    // A step is a unit at least.
-    const std::int32_t before = spot.deepest() - spot.sure() + depth_doubt;
+    const std::int32_t unsure = (spot.deepest() - spot.sure()) >> least_shift;
+    const std::int32_t before = unsure + 1 + depth_doubt;
     return {
         at + sizeof head,
         head.count(),
