@@ -74,10 +74,17 @@ HWY_INLINE std::int32_t number_at(const std::byte* at) {
     return number;
 }
 
+/// Less than 32 also beyond the chunk, where anything stands.
+HWY_INLINE int shift_at(const std::byte* at) {
+    return static_cast<int>(*at) & 31;
+}
+
 HWY_INLINE hn::Vec<Words>
 steps_to(std::int32_t depth, const std::byte* base, const std::byte* shift) {
-    const std::int32_t steps = (depth - number_at(base)) >> static_cast<int>(*shift);
-    return hn::Set(Words(), static_cast<std::int16_t>(std::clamp(steps, -32768, 32767)));
+    const std::int64_t steps = (std::int64_t{depth} - number_at(base)) >> shift_at(shift);
+    return hn::Set(
+        Words(), static_cast<std::int16_t>(std::clamp<std::int64_t>(steps, -32768, 32767))
+    );
 }
 
 HWY_INLINE void store_depths(
@@ -86,7 +93,7 @@ HWY_INLINE void store_depths(
     const std::byte* shift,
     std::int32_t* depths
 ) {
-    const std::int64_t beyond = std::int64_t{hn::GetLane(steps)} * (1 << static_cast<int>(*shift));
+    const std::int64_t beyond = std::int64_t{hn::GetLane(steps)} << shift_at(shift);
     *depths = static_cast<std::int32_t>(number_at(base) + beyond);
 }
 
@@ -110,9 +117,12 @@ HWY_INLINE hn::Vec<Integers> bases_at(const std::byte* at) {
     return hn::LoadU(Integers(), reinterpret_cast<const std::int32_t*>(at));
 }
 
+/// Less than 32 also beyond the chunk, where anything stands.
 HWY_INLINE hn::Vec<Integers> shifts_at(const std::byte* at) {
     const hn::Rebind<std::uint8_t, Integers> bytes;
-    return hn::PromoteTo(Integers(), hn::LoadU(bytes, reinterpret_cast<const std::uint8_t*>(at)));
+    const auto shifts =
+        hn::PromoteTo(Integers(), hn::LoadU(bytes, reinterpret_cast<const std::uint8_t*>(at)));
+    return hn::And(shifts, hn::Set(Integers(), 31));
 }
 
 HWY_INLINE hn::Vec<Words>
