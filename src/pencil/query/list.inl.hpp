@@ -110,7 +110,18 @@ HWY_INLINE V saturated_sum(V a, V b) {
 
 template <class V>
 HWY_INLINE V product(V a, V b) {
+#if HWY_TARGET == HWY_EMU128
+    // There, MulFixedPoint15 overflows for -1 * -1, which may stand beyond a chunk.
+    const Words d;
+    std::array<std::int16_t, hn::MaxLanes(Words())> x, y; // NOLINT(*-member-init): written next
+    hn::StoreU(a, d, x.data());
+    hn::StoreU(b, d, y.data());
+    for (std::size_t i = 0; i < x.size(); ++i)
+        x[i] = static_cast<std::int16_t>((std::int64_t{x[i]} * y[i] + 0x4000) >> 15);
+    return hn::LoadU(d, x.data());
+#else
     return hn::MulFixedPoint15(a, b);
+#endif
 }
 
 HWY_INLINE hn::Vec<Integers> bases_at(const std::byte* at) {
