@@ -140,8 +140,11 @@ HWY_INLINE void locate_radial(const Grid& grid, std::size_t count, Together& ray
         const auto put = [&](std::size_t lane, auto value) HWY_ATTR {
             hn::Store(hn::DemoteTo(integers, value), integers, &rays.units[lane][first]);
         };
-        put(0, u);
-        put(1, v);
+        const auto within = [&](auto place) HWY_ATTR {
+            return hn::Max(hn::Min(place, hn::Set(d, depth_limit[0])), zero);
+        };
+        put(0, within(u));
+        put(1, within(v));
         put(2, hn::IfThenElse(is_sure, depth(2), hn::Set(d, deepest)));
         put(3,
             hn::IfThenElse(
