@@ -21,15 +21,25 @@ public:
     Handover(const Handover&) = delete;
     Handover& operator=(const Handover&) = delete;
 
-    /// Runs a task between the fork and the join.
+    /// Runs a task between the fork and the join. What it throws is handed over as well.
     template <class Task>
     void run(const Task& task) {
         acquire(&fork_);
+        const AtEnd join{&join_};
         task();
-        release(&join_);
     }
 
 private:
+    /// Releases the point when its scope ends, however it does.
+    struct AtEnd {
+        explicit AtEnd(char* at) : point(at) {}
+        ~AtEnd() { release(point); }
+        AtEnd(const AtEnd&) = delete;
+        AtEnd& operator=(const AtEnd&) = delete;
+
+        char* point;
+    };
+
     static void acquire([[maybe_unused]] char* point) {
 #ifdef RAYWISE_THREAD_SANITIZER
         __tsan_acquire(point);
