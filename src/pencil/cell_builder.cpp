@@ -117,7 +117,7 @@ void CellBuilder::add_reference(
 ) {
     const Piece& piece = pieces_[index];
     const auto is_hidden = [&](std::int32_t least) { return (least >> cover_shift) > cover; };
-    if (cover != never && is_hidden(least_depth(static_cast<double>(Range(piece.key).least)))) {
+    if (cover != never && is_hidden(least_depth(static_cast<double>(Extremes(piece.key).least)))) {
         ++statistics_.culled;
         return;
     }
@@ -225,9 +225,7 @@ void CellBuilder::add_list(std::vector<Reference>& references, Cell& cell) {
     statistics_.references += count;
     const std::size_t at = grow(list_bytes(count));
     cell.link = static_cast<std::uint32_t>(at / 16);
-    const ListHead head{
-        static_cast<std::uint32_t>(count) | (cell.cover != Cell::never ? 1U << 31U : 0U)
-    };
+    const ListHead head{static_cast<std::uint32_t>(count)};
     std::byte* to = lists_.data() + at;
     std::memcpy(to, &head, sizeof head);
     to += sizeof head;

@@ -52,10 +52,19 @@ bool is_inside(const Piece& piece, const Bounds& bounds) {
     return true;
 }
 
-constexpr Footprint nothing{1, 0, 1, 0, 0, 0};
+/// The plane of a piece: key = key_at + slope_u * (u - at_u) + slope_v * (v - at_v), in units.
+struct KeyPlane {
+    double at_u, at_v;
+    double key_at;
+    double slope_u, slope_v;
 
-} // namespace
+    [[nodiscard]] double at(double u, double v) const {
+        return key_at + slope_u * (u - at_u) + slope_v * (v - at_v);
+    }
+};
 
+/// Slopes are right to 2^-30, relatively to the steepest; nothing for pieces seen too much from
+/// their edge.
 std::optional<KeyPlane> key_plane(const Piece& piece) {
     const double du1 = piece.u[1] - piece.u[0], dv1 = piece.v[1] - piece.v[0];
     const double du2 = piece.u[2] - piece.u[0], dv2 = piece.v[2] - piece.v[0];
@@ -73,9 +82,13 @@ std::optional<KeyPlane> key_plane(const Piece& piece) {
     };
 }
 
+constexpr Footprint nothing{1, 0, 1, 0, 0, 0};
+
+} // namespace
+
 bool fills(const Piece& piece, const Window& window) {
-    const Range u(piece.u);
-    const Range v(piece.v);
+    const Extremes u(piece.u);
+    const Extremes v(piece.v);
     const Bounds wide = widened(window, piece.margin);
     return u.least < wide.least_u && u.greatest > wide.greatest_u && v.least < wide.least_v &&
            v.greatest > wide.greatest_v && is_inside(piece, wide);
@@ -83,9 +96,9 @@ bool fills(const Piece& piece, const Window& window) {
 
 Footprint footprint(const Piece& piece, const Window& window) {
     const std::int32_t m = piece.margin;
-    const Range u(piece.u);
-    const Range v(piece.v);
-    const Range key(piece.key);
+    const Extremes u(piece.u);
+    const Extremes v(piece.v);
+    const Extremes key(piece.key);
     const std::int32_t last_u = window.first_u + window.side - 1;
     const std::int32_t last_v = window.first_v + window.side - 1;
     if (u.least - m > last_u || u.greatest + m < window.first_u || v.least - m > last_v ||

@@ -4,7 +4,6 @@
 #include "pencil/piece.hpp"
 
 #include <cstdint>
-#include <optional>
 
 namespace raywise::pencil_detail {
 
@@ -30,20 +29,5 @@ struct Footprint {
 
 /// Whether every ray of the window meets the inside of the piece.
 [[nodiscard]] bool fills(const Piece& piece, const Window& window);
-
-/// The plane of a piece: key = key_at + slope_u * (u - at_u) + slope_v * (v - at_v), in units.
-struct KeyPlane {
-    double at_u, at_v;
-    double key_at;
-    double slope_u, slope_v;
-
-    [[nodiscard]] double at(double u, double v) const {
-        return key_at + slope_u * (u - at_u) + slope_v * (v - at_v);
-    }
-};
-
-/// Slopes are right to 2^-30, relatively to the steepest; nothing for pieces seen too much from
-/// their edge.
-[[nodiscard]] std::optional<KeyPlane> key_plane(const Piece& piece);
 
 } // namespace raywise::pencil_detail

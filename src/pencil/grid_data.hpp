@@ -53,14 +53,9 @@ static_assert(sizeof(Cell) == 16);
 /// `edge_rows` and two rows of n 16-bit numbers, see `Row`, then n bases, n ids and n shifts.
 /// References ascend by least depth.
 struct ListHead {
-    std::uint32_t bits; ///< references, is_culled << 31
+    std::uint32_t count; ///< references
 
     static constexpr std::size_t most_references = (1U << 26U) - 1;
-
-    [[nodiscard]] std::size_t count() const { return bits & 0x3FFFFFFU; }
-
-    /// Whether references behind the cell's `cover` were dropped.
-    [[nodiscard]] bool is_culled() const { return (bits >> 31U) != 0; }
 };
 static_assert(sizeof(ListHead) == 4);
 

@@ -18,10 +18,11 @@ inline constexpr double key_rounding = 0x1p-22;
 /// the ray's origin by a factor of (1 - t) after the share t of its way: times t / (1 - t).
 inline constexpr double stray_share = 0x1p-22;
 
-/// Of three numbers. Called for every reference, where the loop of std::minmax is felt.
+/// The least and the greatest of three numbers. Called for every reference, where the loop of
+/// std::minmax is felt.
 template <class T>
-struct Range {
-    explicit Range(const std::array<T, 3>& x)
+struct Extremes {
+    explicit Extremes(const std::array<T, 3>& x)
         : least(std::min(std::min(x[0], x[1]), x[2]))
         , greatest(std::max(std::max(x[0], x[1]), x[2])) {}
 
@@ -40,13 +41,13 @@ struct Piece {
     bool is_part; ///< whether other pieces have the same triangle
     bool is_near; ///< whether a ray that meets the triangle near the apex may miss all its pieces
 
-    [[nodiscard]] std::int32_t least_u() const { return Range(u).least - margin; }
+    [[nodiscard]] std::int32_t least_u() const { return Extremes(u).least - margin; }
 
-    [[nodiscard]] std::int32_t greatest_u() const { return Range(u).greatest + margin; }
+    [[nodiscard]] std::int32_t greatest_u() const { return Extremes(u).greatest + margin; }
 
-    [[nodiscard]] std::int32_t least_v() const { return Range(v).least - margin; }
+    [[nodiscard]] std::int32_t least_v() const { return Extremes(v).least - margin; }
 
-    [[nodiscard]] std::int32_t greatest_v() const { return Range(v).greatest + margin; }
+    [[nodiscard]] std::int32_t greatest_v() const { return Extremes(v).greatest + margin; }
 };
 
 } // namespace raywise::pencil_detail

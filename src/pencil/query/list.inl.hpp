@@ -261,7 +261,7 @@ HWY_INLINE Walk walk(const Grid& grid, const Leaf& leaf, const Spot& spot) {
     const std::int32_t before = unsure + 1 + depth_doubt;
     return {
         at + sizeof head,
-        head.count(),
+        head.count,
         {place_in_cell(spot.u(), leaf.shift),
          place_in_cell(spot.v(), leaf.shift),
          static_cast<std::int16_t>(-std::min(before, 32767)),
