@@ -33,14 +33,12 @@ namespace hn = hwy::HWY_NAMESPACE;
 template <TraceMode mode>
 class GroupAny {
 public:
-    HWY_INLINE explicit GroupAny(const RayGroup& group) : group_(group) {
-        reach_.store(reach_lanes(group.t_max.load()));
-        measure_farthest();
-    }
+    HWY_INLINE explicit GroupAny(const RayGroup& group)
+        : group_(group), reach_(group.t_max.load()) {}
 
-    [[nodiscard]] HWY_INLINE RayLanes reach() const { return reach_.load(); }
+    [[nodiscard]] HWY_INLINE RayLanes reach() const { return reach_.lanes(); }
 
-    [[nodiscard]] HWY_INLINE float farthest() const { return farthest_; }
+    [[nodiscard]] HWY_INLINE float farthest() const { return reach_.farthest(); }
 
     HWY_INLINE void open(const TriangleBlock& block, RayMask rays) {
         const Many d;
@@ -53,16 +51,13 @@ public:
             hit_ |= bits_of(d, found.sure);
             open_ |= bits_of(d, found.possible);
             left = hn::AndNot(found.sure, left);
-            reach_.store(hn::IfThenElse(found.sure, hn::Set(d, -1.0F), reach_.load()));
         }
-        measure_farthest();
+        reach_.end(hn::AndNot(left, rays));
     }
 
     HWY_INLINE void leave(std::uint32_t bits) {
-        const Many d;
         open_ |= bits;
-        reach_.store(hn::IfThenElse(mask_of(bits), hn::Set(d, -1.0F), reach_.load()));
-        measure_farthest();
+        reach_.end(mask_of(bits));
     }
 
     /// Writes the answers; returns the bits of the rays that have none yet.
@@ -73,15 +68,10 @@ public:
     }
 
 private:
-    HWY_INLINE void measure_farthest() {
-        farthest_ = hn::GetLane(hn::MaxOfLanes(Many(), reach_.load()));
-    }
-
     const RayGroup& group_;
-    PerRay reach_;
+    GroupReach reach_;
     std::uint32_t hit_ = 0;
     std::uint32_t open_ = 0;
-    float farthest_ = 0;
 };
 
 } // namespace HWY_NAMESPACE

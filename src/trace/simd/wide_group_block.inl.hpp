@@ -77,6 +77,35 @@ HWY_INLINE RayLanes reach_lanes(RayLanes t) {
     return hn::MulAdd(t, hn::Set(d, 1 + 16 * unit_roundoff), hn::Set(d, 0x1p-120F));
 }
 
+/// How far boxes matter to each ray of a group, below 0 for those that are done; and the greatest.
+class GroupReach {
+public:
+    HWY_INLINE explicit GroupReach(RayLanes t_max) {
+        lanes_.store(reach_lanes(t_max));
+        measure();
+    }
+
+    [[nodiscard]] HWY_INLINE RayLanes lanes() const { return lanes_.load(); }
+
+    [[nodiscard]] HWY_INLINE float farthest() const { return farthest_; }
+
+    /// To what lies before `t`.
+    HWY_INLINE void shorten(RayMask rays, RayLanes t) { set(rays, reach_lanes(t)); }
+
+    HWY_INLINE void end(RayMask rays) { set(rays, hn::Set(Many(), -1.0F)); }
+
+private:
+    HWY_INLINE void set(RayMask rays, RayLanes reach) {
+        lanes_.store(hn::IfThenElse(rays, reach, lanes_.load()));
+        measure();
+    }
+
+    HWY_INLINE void measure() { farthest_ = hn::GetLane(hn::MaxOfLanes(Many(), lanes_.load())); }
+
+    PerRay lanes_;
+    float farthest_ = 0;
+};
+
 } // namespace HWY_NAMESPACE
 } // namespace raywise::simd
 

@@ -39,22 +39,21 @@ namespace hn = hwy::HWY_NAMESPACE;
 template <TraceMode mode>
 class GroupNearest {
 public:
-    HWY_INLINE explicit GroupNearest(const RayGroup& group) : group_(group) {
+    HWY_INLINE explicit GroupNearest(const RayGroup& group)
+        : group_(group), reach_(group.t_max.load()) {
         const Many d;
         limit_.store(group.t_max.load());
-        reach_.store(reach_lanes(group.t_max.load()));
         low_.store(hn::Set(d, std::numeric_limits<float>::infinity()));
         prims_.store(hn::BitCast(d, hn::Set(Ids(), static_cast<std::uint32_t>(no_prim))));
         if constexpr (mode == TraceMode::fast) {
             u_.store(hn::Zero(d));
             v_.store(hn::Zero(d));
         }
-        measure_farthest();
     }
 
-    [[nodiscard]] HWY_INLINE RayLanes reach() const { return reach_.load(); }
+    [[nodiscard]] HWY_INLINE RayLanes reach() const { return reach_.lanes(); }
 
-    [[nodiscard]] HWY_INLINE float farthest() const { return farthest_; }
+    [[nodiscard]] HWY_INLINE float farthest() const { return reach_.farthest(); }
 
     HWY_INLINE void open(const TriangleBlock& block, RayMask rays) {
         for (std::size_t lane = 0; lane < TriangleBlock::width; ++lane) {
@@ -66,10 +65,8 @@ public:
     }
 
     HWY_INLINE void leave(std::uint32_t bits) {
-        const Many d;
         open_ |= bits;
-        reach_.store(hn::IfThenElse(mask_of(bits), hn::Set(d, -1.0F), reach_.load()));
-        measure_farthest();
+        reach_.end(mask_of(bits));
     }
 
     /// Writes the answers; returns the bits of the rays that have none yet.
@@ -125,14 +122,13 @@ private:
         if (taken == 0) return;
         taken_ |= taken;
         limit_.store(hn::IfThenElse(is_taken, found.high, limit_.load()));
-        reach_.store(hn::IfThenElse(is_taken, reach_lanes(found.high), reach_.load()));
+        reach_.shorten(is_taken, found.high);
         prims_.store(hn::IfThenElse(is_taken, hn::BitCast(d, prim), prims_.load()));
         for (; taken != 0; taken &= taken - 1) {
             const auto i = static_cast<std::size_t>(std::countr_zero(taken));
             blocks_[i] = &block;
             lanes_[i] = static_cast<std::uint8_t>(lane);
         }
-        measure_farthest();
     }
 
     /// Where a ray hit nothing, of a triangle without area.
@@ -167,19 +163,15 @@ private:
         return bits;
     }
 
-    HWY_INLINE void measure_farthest() {
-        farthest_ = hn::GetLane(hn::MaxOfLanes(Many(), reach_.load()));
-    }
-
     const RayGroup& group_;
-    PerRay limit_, reach_, low_; // t of what is taken is at least low and at most limit
-    PerRay u_, v_;               // of the fast mode
-    PerRay prims_;               // as bits
+    GroupReach reach_;
+    PerRay limit_, low_; // t of what is taken is at least low and at most limit
+    PerRay u_, v_;       // of the fast mode
+    PerRay prims_;       // as bits
     std::array<const TriangleBlock*, group_size> blocks_;
     std::array<std::uint8_t, group_size> lanes_;
     std::uint32_t taken_ = 0; // rays that a block and a lane are known of
     std::uint32_t open_ = 0;  // rays that met what the filter does not decide, or that left
-    float farthest_ = 0;
 };
 
 } // namespace HWY_NAMESPACE

@@ -1,4 +1,5 @@
 // Batches answer like single queries, whether their rays go together or not.
+#include "support/simd_target.hpp"
 #include "support/soup.hpp"
 #include "support/wide_tree.hpp"
 
@@ -27,19 +28,9 @@ constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 /// Every test runs on every instruction set of this machine.
-class WideBatch : public testing::TestWithParam<std::string_view> {
-protected:
-    void SetUp() override { force_simd_target(GetParam()); }
+class WideBatch : public OnSimdTarget {};
 
-    void TearDown() override { force_simd_target(""); }
-};
-
-INSTANTIATE_TEST_SUITE_P(
-    Targets,
-    WideBatch,
-    testing::ValuesIn(simd_targets()),
-    [](const auto& target) { return std::string(target.param); }
-);
+INSTANTIATE_TEST_SUITE_P(Targets, WideBatch, testing::ValuesIn(simd_targets()), name_of_target);
 
 /// Some `count` rays close to the given one, each with an interval and an exclusion of its own.
 std::vector<Ray> rays_around(const Ray& middle, std::size_t count, std::size_t prims, Rng& rng) {

@@ -2,6 +2,7 @@
 
 #include "support/closed_mesh.hpp"
 #include "support/median_split.hpp"
+#include "support/simd_target.hpp"
 #include "support/soup.hpp"
 #include "support/wide_tree.hpp"
 
@@ -34,16 +35,9 @@ constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 /// Every test runs on every instruction set of this machine.
-class Wide : public testing::TestWithParam<std::string_view> {
-protected:
-    void SetUp() override { force_simd_target(GetParam()); }
+class Wide : public OnSimdTarget {};
 
-    void TearDown() override { force_simd_target(""); }
-};
-
-INSTANTIATE_TEST_SUITE_P(Targets, Wide, testing::ValuesIn(simd_targets()), [](const auto& target) {
-    return std::string(target.param);
-});
+INSTANTIATE_TEST_SUITE_P(Targets, Wide, testing::ValuesIn(simd_targets()), name_of_target);
 
 void expect_same(const std::optional<Hit>& hit, const std::optional<Hit>& expected) {
     ASSERT_EQ(hit.has_value(), expected.has_value());
